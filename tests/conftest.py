@@ -22,6 +22,10 @@ for name in ("SIGHUP", "SIGQUIT"):
         signal.signal(getattr(signal, name), signal.SIG_DFL)
 
 
+# They run in environments of their own: tests/ros/run.sh.
+collect_ignore = ["ros"]
+
+
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
         "--long", action="store_true", help="Run everything at full length."

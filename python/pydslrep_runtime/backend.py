@@ -12,7 +12,9 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 from .errors import SetupError, SimulatorError
+from .facts import TypeName
 from .pose import Pose
+from .ros2_topics import Mounts, Ros2Settings
 
 
 @dataclass(frozen=True)
@@ -27,6 +29,9 @@ class RobotSpec:
     bumpers: Sequence[str] = ()  # bumpers that an action reads
     # The paths of itself and its parts in the simulator's scene, by name, if their names are others there.
     objects: Mapping[str, Sequence[str]] = field(default_factory=dict)
+    type: TypeName = "tw"
+    ros2: Ros2Settings = field(default_factory=Ros2Settings)
+    mounts: Mounts = field(default_factory=dict)  # of sensors, if the script knows them
 
 
 @dataclass(frozen=True)

@@ -69,21 +69,14 @@ def parse_arguments(
     environment: str,
 ) -> argparse.Namespace:
     """Parses the command line; in the result, `ports` and `classes` are by robot."""
-    simulator = SIMULATORS[backend]
     parser = argparse.ArgumentParser(
         description=description, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument(
-        "--host", default=host, help=f"host of {simulator.name} (default: %(default)s)"
-    )
-    parser.add_argument(
-        "--port",
-        action="append",
-        default=[],
-        type=parse_port,
-        metavar="[ROBOT=]PORT",
-        help=simulator.ports,
-    )
+    if backend == "ros2":
+        add_ros2_options(parser)
+    else:
+        add_simulator_options(parser, SIMULATORS[backend], host)
+        add_mujoco_options(parser)
     parser.add_argument(
         "--robot",
         action="append",
@@ -104,7 +97,6 @@ def parse_arguments(
         help="write what happens to FILE, as JSON lines for programs; "
         "- is standard output, in place of the lines for people",
     )
-    parser.add_argument("--realtime", action="store_true", help=simulator.realtime)
     if backend == "coppeliasim":
         # V-REP often listens only while its simulation runs.
         parser.add_argument(
@@ -112,7 +104,6 @@ def parse_arguments(
             action="store_true",
             help="stop a simulation that runs already, which puts everything back, and start it again",
         )
-    add_mujoco_options(parser)
     add_slam_options(parser, environment)
     options = parser.parse_args()
     if options.mujoco is None and (options.view or options.speed is not None):
@@ -139,6 +130,34 @@ def add_mujoco_options(parser: argparse.ArgumentParser) -> None:
         type=parse_positive,
         metavar="X",
         help="simulated seconds per second (default: as fast as possible, with --view 1)",
+    )
+
+
+def add_simulator_options(
+    parser: argparse.ArgumentParser, simulator: Simulator, host: str
+) -> None:
+    """Where a simulator is, and how fast it runs."""
+    parser.add_argument(
+        "--host", default=host, help=f"host of {simulator.name} (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--port",
+        action="append",
+        default=[],
+        type=parse_port,
+        metavar="[ROBOT=]PORT",
+        help=simulator.ports,
+    )
+    parser.add_argument("--realtime", action="store_true", help=simulator.realtime)
+
+
+def add_ros2_options(parser: argparse.ArgumentParser) -> None:
+    """In ROS 2 there are no ports, and time may be that of a simulation."""
+    parser.set_defaults(host="", port=[], mujoco=None, view=False, speed=None)
+    parser.add_argument(
+        "--sim-time",
+        action="store_true",
+        help="time is that of the topic /clock; without it, real time",
     )
 
 

@@ -12,6 +12,18 @@ RIM_ACCELERATION = 0.5  # m/s² at the rims, when accelerating and braking
 MOTOR_ACCELERATION = 1.0  # m/s² at the rims, at most, unless a scene has it
 SENSOR_RANGE = 1.0  # m of a distance sensor, unless a scene has it
 SENSOR_CONE = math.radians(20.0)  # opening angle of a sensor, unless a scene has it
+TRACK = 0.3  # m between left and right wheels, unless a scene has it
+WHEELBASE = 0.25  # m between front and rear wheels, unless a scene has it
+
+# What a robot is like in ROS 2, unless a scene has it.
+ROS2_CMD_VEL = "cmd_vel"
+ROS2_STAMPED = False
+ROS2_ODOM = "odom"
+ROS2_RANGES = "range/{sensor}"
+ROS2_BASE_FRAME = "base_link"
+ROS2_ODOM_FRAME = "odom"
+ROS2_QOS = "best-effort"
+ROS2_SPEED_LIMIT = 0.5
 
 TypeName = Literal["tw", "fw", "fwh"]
 

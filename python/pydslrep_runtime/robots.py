@@ -11,11 +11,12 @@ from .conditions import Condition, Watch
 from .drives import Drive, DriveType, FourMecanumDrive, FourWheelDrive, TwoWheelDrive
 from .errors import SetupError, SimulatorError
 from .event_loop import SimulationLoop
-from .facts import RIM_SPEED
+from .facts import RIM_SPEED, ROBOT_TYPES, TypeName
 from .loops import Repeat, RepeatUntil
 from .motion import Motion
 from .movements import place_of
 from .pose import Pose
+from .ros2_topics import NO_SETTINGS, Mounts, Ros2Settings
 from .settings import MAX_DISTANCE, MAX_IDLE_ROUNDS, MAX_ROUNDS, MAX_TURN, MAX_WAIT
 from .trace import Trace
 
@@ -30,6 +31,7 @@ Objects = Mapping[str, str | Sequence[str]]
 """Paths in a simulator's scene by name; several if a wheel and a sensor share a name."""
 
 NO_OBJECTS: Objects = {}
+NO_MOUNTS: Mounts = {}
 
 Side = Literal["left", "right"]
 
@@ -48,11 +50,13 @@ class Robot:
         sensors: Sequence[str] = (),
         bumpers: Sequence[str] = (),
         objects: Objects = NO_OBJECTS,
+        ros2: Ros2Settings = NO_SETTINGS,
+        mounts: Mounts = NO_MOUNTS,
     ) -> None:
         """`port` is that of its simulator's remote API.
 
         `objects` are the paths of the robot and its parts in the simulator's scene, by name, if their names are others
-        there.
+        there. `ros2` says what is not as usual of its topics, `mounts` where its sensors are.
         """
         self.name, self.port = name, port
         self.wheels = dict(wheels)
@@ -66,6 +70,7 @@ class Robot:
         parts = {name, *self.wheels, *self.sensors, *self.bumpers}
         if unknown := self.objects.keys() - parts:
             raise ValueError(f"robot {name} has no part {min(unknown)}")
+        self.ros2, self.mounts = ros2, mounts
         self._motion: Motion | None = None
         self._slam_session: SlamSession | None = None
         self._is_acting = False
@@ -263,7 +268,16 @@ class Robot:
             self.sensors,
             self.bumpers,
             self.objects,
+            self._type(),
+            self.ros2,
+            self.mounts,
         )
+
+    def _type(self) -> TypeName:
+        """The type with its drive; one with wheels of its own is like the first."""
+        drive = getattr(self.drive_type, "__name__", "")
+        found = (name for name, row in ROBOT_TYPES.items() if row.drive == drive)
+        return next(found, "tw")
 
     def connect(
         self,
@@ -371,6 +385,8 @@ class TwoWheelRobot(Robot):
         sensors: Sequence[str] = (),
         bumpers: Sequence[str] = (),
         objects: Objects = NO_OBJECTS,
+        ros2: Ros2Settings = NO_SETTINGS,
+        mounts: Mounts = NO_MOUNTS,
     ) -> None:
         super().__init__(
             name,
@@ -379,6 +395,8 @@ class TwoWheelRobot(Robot):
             sensors=sensors,
             bumpers=bumpers,
             objects=objects,
+            ros2=ros2,
+            mounts=mounts,
         )
 
 
@@ -399,6 +417,8 @@ class FourWheelRobot(Robot):
         sensors: Sequence[str] = (),
         bumpers: Sequence[str] = (),
         objects: Objects = NO_OBJECTS,
+        ros2: Ros2Settings = NO_SETTINGS,
+        mounts: Mounts = NO_MOUNTS,
     ) -> None:
         wheels = (left_front, left_rear, right_front, right_rear)
         super().__init__(
@@ -408,6 +428,8 @@ class FourWheelRobot(Robot):
             sensors=sensors,
             bumpers=bumpers,
             objects=objects,
+            ros2=ros2,
+            mounts=mounts,
         )
 
 

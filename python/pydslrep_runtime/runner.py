@@ -24,7 +24,7 @@ from .slam.session import SlamSession
 from .trace import Trace
 from .version import __version__
 
-BackendName = Literal["coppeliasim", "vrep"]
+BackendName = Literal["coppeliasim", "vrep", "ros2"]
 Main = Callable[[], Coroutine[Any, Any, object]]
 
 DONE, FAILED, BROKEN = 0, 1, 2  # exit codes
@@ -234,6 +234,10 @@ def connect_to(backend: BackendName, options: argparse.Namespace) -> Simulator:
         from .vrep import VRep
 
         return VRep(options.host, realtime=options.realtime)
+    if backend == "ros2":
+        from .ros2 import Ros2
+
+        return Ros2(sim_time=options.sim_time)
     from .coppeliasim import CoppeliaSim
 
     return CoppeliaSim(options.host, realtime=options.realtime, restart=options.restart)

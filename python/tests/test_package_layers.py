@@ -19,6 +19,7 @@ LAYERS = (
     "errors",
     "readings",
     "outputs",
+    "ros2_topics",
     "pose",
     "events",
     "notes",
@@ -42,6 +43,9 @@ LAYERS = (
     "vrep",
     "obstacle_path",
     "mujoco_engine",
+    "ros2_link",
+    "ros2",
+    "ros2_world",
     "event_loop",
     "motion",
     "movements",
@@ -59,6 +63,7 @@ LIBRARIES = {
     "remote_api": {"zmq", "coppeliasim_zmqremoteapi_client"},
     "mujoco_engine": {"mujoco", "numpy"},
     "slam/odometry": {"numpy", "scipy"},
+    "ros2_link": {"rclpy"},
 }
 
 

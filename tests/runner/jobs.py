@@ -171,7 +171,7 @@ def checks() -> list[Job]:
 
 
 def in_editors() -> list[Job]:
-    """What is checked in real editors and browsers."""
+    """What is checked in real editors and browsers, and with ROS 2."""
     ready = ("tools", "build", "editors")
     editor = "tests/editors/run.sh"
     packages = f"VSIX=$(cat {NATIVE}) VSIX_WEB=$(cat {WEB})"
@@ -212,6 +212,14 @@ def in_editors() -> list[Job]:
             read=results.of_node_in(SITE),
         ),
         job("web", f"{editor} web", "web-build"),
+        # No editor, but as large an installation, which most changes do not concern.
+        Job(
+            "ros",
+            ("tests/ros/run.sh ${LONG:+--long}",),
+            after=("tools", "build"),
+            read=results.of_pytest,
+            editor=True,
+        ),
     ]
 
 

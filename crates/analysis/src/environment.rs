@@ -3,7 +3,7 @@
 use std::net::Ipv4Addr;
 
 use pydslrep_kinematics::{ActionIndex, Drive, Place};
-pub use pydslrep_scene::{Objects, SensorKind};
+pub use pydslrep_scene::{Mount, Objects, Ros2, Ros2Value, SensorKind};
 
 /// One environment, ready to run. Indices refer to the vectors of this struct.
 #[derive(Debug, Clone, PartialEq)]
@@ -86,6 +86,10 @@ pub struct Robot {
     pub sensors: Vec<Sensor>,
     /// Where its scene file says that it and its parts are in the simulator's scene, if their objects have other names there.
     pub objects: Objects,
+    /// What is not as usual of its topics in ROS 2; empty for other targets.
+    pub ros2: Ros2,
+    /// Where its sensors are, in their order; empty for targets that ask the simulator.
+    pub mounts: Vec<Mount>,
     /// Where it is declared.
     pub source: Source,
 }

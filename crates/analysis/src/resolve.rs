@@ -11,8 +11,8 @@ use pydslrep_syntax::{EntityKind, Parse, Span, TokenKind};
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::environment::{
-    Action, ActionKind, Branch, Circle, Condition, Environment, Movement, Objects, Robot, Sensor, Source,
-    Wheel,
+    Action, ActionKind, Branch, Circle, Condition, Environment, Movement, Objects, Robot, Ros2, Sensor,
+    Source, Wheel,
 };
 use crate::{
     Database, Diagnostic, EntityId, EntityRef, FileId, Severity, check_cancelled, diagnostics, plan,
@@ -103,7 +103,7 @@ impl Database {
         }
         // Otherwise a declaration it needs is hidden in text that was not understood; those errors are the cause.
         let hidden = || self.files().flat_map(|file| self.diagnostics(file)).filter(is_error).collect();
-        let environment = parts.environment(id).map(|environment| self.with_objects(id, environment));
+        let environment = parts.environment(id).map(|environment| self.with_scene(id, environment));
         environment
             .ok_or_else(|| Blocked { environment: name, errors: Arc::clone(all_errors.get_or_init(hidden)) })
     }
@@ -393,6 +393,8 @@ impl<'a> Parts<'a> {
             wheels: wheels.iter().map(|id| self.wheel(*id)).collect::<Option<_>>()?,
             sensors: sensors.iter().map(|id| self.sensor(*id)).collect::<Option<_>>()?,
             objects: Objects::new(),
+            ros2: Ros2::new(),
+            mounts: Vec::new(),
             source: self.source(&self.database.entity(id)?, 0)?,
         })
     }

@@ -11,17 +11,24 @@ static STANDARD_MODULES: LazyLock<FxHashSet<&str>> =
 
 /// Modules that scripts and the clients of simulators import, or look for, beside the standard ones. Those of all targets
 /// count: a script would hide them from others in its folder, too.
-const CLIENT_MODULES: [&str; 13] = [
+const CLIENT_MODULES: [&str; 20] = [
+    "builtin_interfaces",
     "cbor",
     "cbor2",
     "cffi",
     "coppeliasim_zmqremoteapi_client",
+    "geometry_msgs",
     "matplotlib",
+    "nav_msgs",
     "numpy",
     "pydslrep_runtime",
+    "rclpy",
+    "rosgraph_msgs",
     "scipy",
+    "sensor_msgs",
     "sim",
     "simConst",
+    "std_msgs",
     "vrep",
     "vrepConst",
     "zmq",

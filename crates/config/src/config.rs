@@ -178,7 +178,7 @@ mod tests {
         let config = toml(
             "target = 1\noutput = \"\"\ngenerate-on-save = \"yes\"\ndefault-speed = 0\nseverity = \"off\"\ninlay-hints = true\n",
             &expect![[r#"
-                invalid-value 9 `1`: `target` must be `"coppeliasim"` or `"vrep"`, not a number
+                invalid-value 9 `1`: `target` must be `"coppeliasim"`, `"vrep"` or `"ros2"`, not a number
                   help: write, for example, `"vrep"`
                 invalid-value 20 `""`: `output` is empty
                   help: name a folder, or remove the key: scripts are then written beside their programs

@@ -151,10 +151,11 @@ impl Default for Settings {
 }
 
 const TARGETS: [Word; Target::ALL.len()] = {
-    let [first, second] = Target::ALL;
+    let [first, second, third] = Target::ALL;
     [
         Word { word: first.word(), summary: first.summary() },
         Word { word: second.word(), summary: second.summary() },
+        Word { word: third.word(), summary: third.summary() },
     ]
 };
 

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use pydslrep_kinematics::{Drive, Geometry, Model, ModelError, Pose, Traction, scrub_factor};
 
-use crate::{Mount, defaults, mounts_by_name};
+use crate::{Mount, Ros2, defaults, mounts_by_name};
 
 /// A robot: a rectangular body on driven wheels.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,6 +38,8 @@ pub struct Robot {
     pub frame: Frame,
     /// Where it and its parts are in `CoppeliaSim`'s scene, if their objects have other names there.
     pub objects: Objects,
+    /// What is not as usual of its topics in ROS 2.
+    pub ros2: Ros2,
 }
 
 /// The paths of a robot and its parts in a simulator's scene, by name. Parts of different kinds may share one.
@@ -166,6 +168,7 @@ impl Robot {
             wheel_width: defaults::WHEEL_WIDTH,
             frame: Frame::default(),
             objects: Objects::new(),
+            ros2: Ros2::new(),
         }
     }
 

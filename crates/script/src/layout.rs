@@ -20,6 +20,8 @@ pub(crate) enum Expression {
     Tuple { keyword: &'static str, items: Vec<Expression> },
     /// As a list, of keys with their values.
     Dict { keyword: &'static str, items: Vec<Expression> },
+    /// An entry of those: a tuple under a key.
+    Entry { key: String, items: Vec<Expression> },
 }
 
 /// What is before the call of a statement.
@@ -135,6 +137,7 @@ impl Expression {
             Self::List { keyword, items } => Some((format!("{keyword}=["), items, "]")),
             Self::Tuple { keyword, items } => Some((format!("{keyword}=("), items, ")")),
             Self::Dict { keyword, items } => Some((format!("{keyword}={{"), items, "}")),
+            Self::Entry { key, items } => Some((format!("{key}: ("), items, ")")),
         }
     }
 }

@@ -5,10 +5,12 @@ use std::iter;
 use std::net::Ipv4Addr;
 
 use pydslrep_analysis::Target;
-use pydslrep_analysis::environment::{ActionKind, Environment, Movement, Robot, Sensor, SensorKind, nested};
+use pydslrep_analysis::environment::{
+    ActionKind, Environment, Movement, Robot, Ros2Value, Sensor, SensorKind, nested,
+};
 
 use crate::identifiers::{CLEAR, DETECTS, Identifiers, conditions, imports};
-use crate::layout::Expression::{self, Atom, Call, Dict, List, Tuple};
+use crate::layout::Expression::{self, Atom, Call, Dict, Entry, List, Tuple};
 use crate::layout::{WIDTH, comment_text, float, literal};
 use crate::runtime;
 use crate::statements::Statements;
@@ -24,7 +26,9 @@ pub(crate) fn write(environment: &Environment, target: Target, program: &str) ->
     let used = used_sensors(environment);
     for (index, identifier) in names.robots.iter().enumerate() {
         head += if index == 0 { "\n\n" } else { "\n" };
-        head += &robot(&environment.robots[index], &used[index], identifier);
+        let declared = &environment.robots[index];
+        let is_explorer = explorers(environment).contains(&index);
+        head += &robot(declared, &used[index], identifier, is_explorer);
     }
     let mut blocks = vec![head];
     for (movement, identifier) in environment.movements.iter().zip(&names.movements) {
@@ -39,6 +43,7 @@ fn docstring(environment: &Environment, target: Target, program: &str) -> String
     let simulator = match target {
         Target::CoppeliaSim => "CoppeliaSim",
         Target::VRep => "V-REP",
+        Target::Ros2 => "ROS 2",
     };
     let name = identifier_text(&environment.name);
     let from = if program.is_empty() { String::new() } else { format!(" from {}", docstring_text(program)) };
@@ -71,7 +76,8 @@ fn import(environment: &Environment, target: Target, program: &str) -> String {
 
 /// How to get the runtime, as comments: without the program's name, and with it if a shell takes it as it is.
 fn hints(target: Target, program: &str) -> [String; 2] {
-    let option = if target == Target::VRep { " --target vrep" } else { "" };
+    let option =
+        if target == Target::CoppeliaSim { String::new() } else { format!(" --target {}", target.word()) };
     let short = format!("  # if missing: pydslrep build{option}");
     let is_plain = |c: char| c.is_ascii_alphanumeric() || ['_', '.', '-'].contains(&c);
     let is_word = program.starts_with(|c: char| c.is_ascii_alphanumeric()) && program.chars().all(is_plain);
@@ -79,12 +85,13 @@ fn hints(target: Target, program: &str) -> [String; 2] {
     [short, long]
 }
 
-fn robot(robot: &Robot, used: &BTreeSet<usize>, identifier: &str) -> String {
+fn robot(robot: &Robot, used: &BTreeSet<usize>, identifier: &str, is_explorer: bool) -> String {
     let mut arguments = vec![Atom(literal(&robot.name)), Atom(format!("port={}", robot.port))];
     arguments.extend(robot.drive.row().wheels.iter().zip(&robot.wheels).map(|(place, wheel)| Tuple {
         keyword: place.identifier,
         items: vec![Atom(literal(&wheel.name)), Atom(float(wheel.radius))],
     }));
+    let mounts = mounts(robot, used, is_explorer);
     let used: Vec<&Sensor> = used.iter().map(|&sensor| &robot.sensors[sensor]).collect();
     for (keyword, kind) in [("sensors", SensorKind::Distance), ("bumpers", SensorKind::Bumper)] {
         let of_kind = used.iter().filter(|sensor| sensor.kind == kind);
@@ -92,6 +99,8 @@ fn robot(robot: &Robot, used: &BTreeSet<usize>, identifier: &str) -> String {
         arguments.extend((!items.is_empty()).then_some(List { keyword, items }));
     }
     arguments.extend(objects(robot, &used));
+    arguments.extend(ros2(robot));
+    arguments.extend(mounts);
     let head = format!("{identifier} = {}", robot.drive.row().class);
     Call { head, arguments }.lay_out(0, "")
 }
@@ -110,6 +119,51 @@ fn objects(robot: &Robot, sensors: &[&Sensor]) -> Option<Expression> {
         })
         .collect();
     (!items.is_empty()).then_some(Dict { keyword: "objects", items })
+}
+
+/// What a script has to know of a robot's topics.
+fn ros2(robot: &Robot) -> Option<Expression> {
+    let items: Vec<Expression> = robot
+        .ros2
+        .iter()
+        .map(|(key, value)| {
+            let value = match value {
+                Ros2Value::Text(text) => literal(text),
+                Ros2Value::Number(number) => float(*number),
+                Ros2Value::Flag(true) => "True".to_owned(),
+                Ros2Value::Flag(false) => "False".to_owned(),
+            };
+            Atom(format!("{}: {value}", literal(&key.replace('-', "_"))))
+        })
+        .collect();
+    (!items.is_empty()).then_some(Dict { keyword: "ros2", items })
+}
+
+/// Where sensors are, for scripts that no topic tells it and that have to know.
+fn mounts(robot: &Robot, used: &BTreeSet<usize>, is_explorer: bool) -> Option<Expression> {
+    let reads_scan = robot.ros2.iter().any(|(key, _)| *key == "scan");
+    if !reads_scan && !is_explorer {
+        return None;
+    }
+    let items: Vec<Expression> = used
+        .iter()
+        .filter_map(|&index| {
+            let mount = robot.mounts.get(index)?;
+            let degrees = |radians: f64| (radians.to_degrees() * 1e6).round() / 1e6;
+            let pose = mount.pose;
+            let numbers = [pose.x, pose.y, degrees(pose.theta), mount.range, degrees(mount.cone)];
+            let items = numbers.into_iter().map(|number| Atom(float(number))).collect();
+            Some(Entry { key: literal(&robot.sensors.get(index)?.name), items })
+        })
+        .collect();
+    (!items.is_empty()).then_some(Dict { keyword: "mounts", items })
+}
+
+/// The indices of the robots that explore.
+fn explorers(environment: &Environment) -> BTreeSet<usize> {
+    let explores =
+        |movement: &&Movement| nested(&movement.actions).iter().any(|action| action.kind == ActionKind::Slam);
+    environment.movements.iter().filter(explores).map(|movement| movement.robot).collect()
 }
 
 /// The indices of the sensors that each robot's actions read: for exploring all that measure distances.
@@ -183,7 +237,7 @@ fn main(environment: &Environment, target: Target, names: &Identifiers) -> Strin
     if let Some(host) = environment.host.filter(|host| *host != Ipv4Addr::LOCALHOST) {
         add("host", &host.to_string());
     }
-    if target == Target::VRep {
+    if target != Target::CoppeliaSim {
         add("backend", target.word());
     }
     if environment.name != names.environment {

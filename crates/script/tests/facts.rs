@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use expect_test::expect_file;
 use pydslrep_kinematics::{Drive, motion};
-use pydslrep_scene::{SensorKind, defaults};
+use pydslrep_scene::{SCHEMA, SensorKind, defaults};
 
 #[test]
 fn the_package_has_the_types_of_robots_and_the_figures_of_this_program() {
@@ -28,14 +28,33 @@ RIM_ACCELERATION = {acceleration:?}  # m/s² at the rims, when accelerating and 
 MOTOR_ACCELERATION = {motor:?}  # m/s² at the rims, at most, unless a scene has it
 SENSOR_RANGE = {range:?}  # m of a distance sensor, unless a scene has it
 SENSOR_CONE = math.radians({cone:?})  # opening angle of a sensor, unless a scene has it
-"#,
+TRACK = {track:?}  # m between left and right wheels, unless a scene has it
+WHEELBASE = {wheelbase:?}  # m between front and rear wheels, unless a scene has it
+
+# What a robot is like in ROS 2, unless a scene has it.
+{ros2}"#,
         step = motion::STEP,
         speed = motion::RIM_SPEED,
         acceleration = motion::RIM_ACCELERATION,
         motor = defaults::MOTOR_ACCELERATION,
         range = defaults::range(SensorKind::Distance),
         cone = defaults::CONE_DEGREES,
+        track = defaults::GEOMETRY.track,
+        wheelbase = defaults::GEOMETRY.wheelbase,
+        ros2 = ros2(),
     )
+}
+
+/// The defaults of the keys of scenes that have one.
+fn ros2() -> String {
+    let keys = SCHEMA.table("robots.NAME.ros2").expect("a table").keys.iter();
+    let defaults = keys.filter_map(|key| Some((key.name, key.default_value()?)));
+    let mut text = String::new();
+    for (name, value) in defaults {
+        let value = if value == "false" { "False" } else { value };
+        writeln!(text, "ROS2_{} = {value}", name.to_uppercase().replace('-', "_")).expect("a string");
+    }
+    text
 }
 
 fn robot_types() -> String {

@@ -14,7 +14,7 @@ use super::{Database, EntityId, FileId};
 use crate::diagnostics::PlannedRun;
 use crate::environment::{Environment, Robot};
 use crate::names::Key;
-use crate::{Fingerprint, scene};
+use crate::{Fingerprint, Target, scene};
 
 /// Scenes by the names of environments.
 pub(super) type Scenes = BTreeMap<SmolStr, SceneFile>;
@@ -71,15 +71,26 @@ impl Database {
         if problems.is_empty() { Ok(scene) } else { Err(problems) }
     }
 
-    /// An environment with what its scene file says of its robots' objects, as far as that is right.
-    pub(crate) fn with_objects(&self, id: EntityId, environment: Environment) -> Environment {
-        // Most files say nothing of them and are not read.
-        let Some(text) = self.scene_text(id).filter(|text| text.contains("object")) else {
+    /// An environment with what its scene says of its robots' objects, and of their topics where scripts need them, as far as
+    /// that is right.
+    pub(crate) fn with_scene(&self, id: EntityId, environment: Environment) -> Environment {
+        let has_topics = self.file_of(id).is_some_and(|file| self.target(file) == Target::Ros2);
+        // Most files say nothing of objects and are not read.
+        let text = self.scene_text(id).filter(|text| has_topics || text.contains("object"));
+        if text.is_none() && !has_topics {
             return environment;
+        }
+        let floor = scene(&environment);
+        let robots = match text {
+            Some(text) => pydslrep_scene::read(text, floor).0.robots,
+            None => floor.robots,
         };
-        let robots = pydslrep_scene::read(text, scene(&environment)).0.robots;
         let placed = environment.robots.into_iter().zip(robots);
-        let placed = placed.map(|(robot, placed)| Robot { objects: placed.objects, ..robot });
+        let placed = placed.map(|(robot, placed)| {
+            let mounts = || placed.sensors.iter().map(|sensor| sensor.mount).collect();
+            let (ros2, mounts) = if has_topics { (placed.ros2(), mounts()) } else { Default::default() };
+            Robot { ros2, mounts, objects: placed.objects, ..robot }
+        });
         Environment { robots: placed.collect(), ..environment }
     }
 

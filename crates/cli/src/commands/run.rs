@@ -42,6 +42,7 @@ const HELP: Help = Help {
         ("pydslrep run patrol.pyr --engine mujoco", "in the physics engine MuJoCo"),
         ("pydslrep run patrol.pyr --host 127.0.0.1 --port 23000", "in a CoppeliaSim that is running there"),
         ("pydslrep run patrol.pyr --target vrep", "with V-REP's legacy remote API"),
+        ("pydslrep run patrol.pyr --target ros2", "with the drivers of robots that are there in ROS 2"),
         ("pydslrep run patrol.pyr --events -", "and tell a program what happens"),
         (
             "pydslrep run patrol.pyr --robot my_robot:Rover",
@@ -52,7 +53,8 @@ const HELP: Help = Help {
          CoppeliaSim client library into it, which needs Python 3.11 or later and network access. The first \
          run with --odometry does the same with NumPy and SciPy, and the first one with --engine mujoco with MuJoCo. With --target vrep, your own Python runs \
          the script with V-REP's client (sim.py or vrep.py and its library) from the program's folder or \
-         from Python's path. If all robots are your own, your own Python runs the script without a \
+         from Python's path. With --target ros2, no simulator is started, and your own Python runs the script: \
+         one that can import rclpy. If all robots are your own, your own Python runs the script without a \
          simulator."],
 };
 
@@ -98,6 +100,9 @@ pub(crate) struct Arguments {
     /// Write what happens to a file, as JSON lines for programs; `-` is standard output, in place of the table
     #[arg(long, value_name = "FILE")]
     events: Option<PathBuf>,
+    /// With the target ros2: time is that of the topic /clock, as a simulation publishes it
+    #[arg(long, conflicts_with = "host")]
+    sim_time: bool,
     /// Explore by wheel odometry, without poses from the simulator
     #[arg(long)]
     odometry: bool,
@@ -182,6 +187,7 @@ fn perform(arguments: &Arguments, reporter: &mut Reporter) -> Result<ExitCode, F
             "--restart is for CoppeliaSim: V-REP may listen only while its simulation runs",
         ));
     }
+    check_target(arguments, target)?;
     let id = program::environment(&inputs, file, arguments.environment.as_deref())?;
     if let Some(scene) = &arguments.scene {
         inputs.use_scene(file, id, scene)?;
@@ -206,7 +212,10 @@ fn perform(arguments: &Arguments, reporter: &mut Reporter) -> Result<ExitCode, F
     let outputs = arguments.outputs(map.as_deref());
     check_outputs(&outputs, &inputs.read_paths())?;
     let home = inputs.place(file).and_then(Path::parent).unwrap_or(Path::new(".")).to_owned();
-    let simulated = own_robots::simulated(&arguments.robot, &environment)?;
+    let mut simulated = own_robots::simulated(&arguments.robot, &environment)?;
+    if target == Target::Ros2 {
+        simulated.clear();
+    }
     let planned = Planned::new(environment, scene)?;
     let run = Run { arguments, reporter, target, home, simulated, map, planned };
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
@@ -230,6 +239,27 @@ fn target(arguments: &Arguments, chosen: Target) -> Result<Target, Failure> {
         ));
     }
     Ok(Target::CoppeliaSim)
+}
+
+/// Refuses what a target knows nothing of: without a simulator, there is none to configure.
+fn check_target(arguments: &Arguments, target: Target) -> Result<(), Failure> {
+    let is_ros2 = target == Target::Ros2;
+    let unknown = [
+        ("--host", is_ros2 && arguments.host.is_some()),
+        ("--speed", is_ros2 && arguments.speed.is_some()),
+        ("--seed", is_ros2 && arguments.seed.is_some()),
+        ("--engine", is_ros2 && arguments.embedded_engine() != Engine::default()),
+        ("--odometry", is_ros2 && arguments.odometry),
+        ("--sim-time", !is_ros2 && arguments.sim_time),
+    ];
+    match unknown.into_iter().find(|(_, is_wrong)| *is_wrong) {
+        Some(("--sim-time", _)) => Err(Failure::new("--sim-time is for the target ros2")),
+        Some((option, _)) => {
+            Err(Failure::new(format!("{option} is for simulators, and the target ros2 starts none"))
+                .help("`pydslrep sim --ros2` starts a robot to try it with"))
+        }
+        None => Ok(()),
+    }
 }
 
 fn unstarted(error: &dyn std::fmt::Display) -> Failure {
@@ -345,7 +375,11 @@ impl Run<'_> {
 
     /// Whether the script alone knows some of the paths.
     fn needs_trace(&self) -> bool {
-        self.arguments.host.is_some() || self.has_own_robots() || self.is_in_mujoco()
+        let arguments = self.arguments;
+        arguments.host.is_some()
+            || self.has_own_robots()
+            || self.is_in_mujoco()
+            || self.target == Target::Ros2
     }
 
     async fn python(&self) -> Result<PathBuf, Failure> {
@@ -409,8 +443,12 @@ impl Run<'_> {
         world: Option<&World>,
     ) -> Vec<OsString> {
         let mut all: Vec<OsString> = vec![path.into()];
-        let host = self.arguments.host.as_deref().unwrap_or("127.0.0.1");
-        all.extend(["--host".into(), host.into(), "--events".into(), reporter::STANDARD_OUTPUT.into()]);
+        if self.target != Target::Ros2 {
+            let host = self.arguments.host.as_deref().unwrap_or("127.0.0.1");
+            all.extend(["--host".into(), host.into()]);
+        }
+        all.extend(["--events".into(), reporter::STANDARD_OUTPUT.into()]);
+        all.extend(self.arguments.sim_time.then(|| "--sim-time".into()));
         all.extend(own_robots::arguments(&self.arguments.robot));
         let ports: Vec<String> = match simulator {
             Some(simulator) => self

@@ -22,18 +22,22 @@ use crate::inputs::program;
 use crate::options::{above_zero, engine_parser};
 use crate::report::output;
 use crate::run::interrupt::{self, Interrupts};
+use crate::run::ros2_world::{self, Node};
 
 const HELP: Help = Help {
     examples: &[
         ("pydslrep sim patrol.pyr", "serves the port of each robot, until Ctrl+C"),
         ("python3 yard.py", "in another terminal: the script of the program"),
         ("pydslrep sim patrol.pyr --trace driven.jsonl", "also write the poses of the robots"),
+        ("pydslrep sim patrol.pyr --ros2", "as a node of ROS 2: for `pydslrep run patrol.pyr --target ros2`"),
         ("pydslrep sim --empty", "as CoppeliaSim starts: for `pydslrep scene push`"),
     ],
     notes: &[
         "Scripts of both targets can connect at the same time: the first message of a client tells which \
          remote API it uses. Scripts step the simulation; while none does, it runs by itself. The wheels of \
          a script that disconnects stop.",
+        "With --ros2 it is a node of ROS 2 instead: it takes cmd_vel and publishes odom, range and /clock. Its Python \
+         needs rclpy and the CoppeliaSim client library (coppeliasim-zmqremoteapi-client).",
     ],
 };
 
@@ -74,6 +78,15 @@ pub(crate) struct Arguments {
     /// Write every step to a file, as JSON lines; it is called FILE.partial until the simulator stops
     #[arg(long, value_name = "FILE")]
     trace: Option<PathBuf>,
+    /// Be a node of ROS 2, with the topics of the scene, in place of the ports
+    #[arg(long, conflicts_with_all = ["empty", "listen"])]
+    ros2: bool,
+    /// With --ros2: a script that runs with --sim-time takes the steps, so that runs do not depend on the machine
+    #[arg(long, requires = "ros2")]
+    lockstep: bool,
+    /// The Python of the node, which can import rclpy [default: python3]
+    #[arg(long, value_name = "PATH", requires = "ros2")]
+    python: Option<PathBuf>,
 }
 
 /// Runs the command.
@@ -97,7 +110,7 @@ fn simulate_empty_floor(arguments: &Arguments) -> Result<ExitCode, Failure> {
         None => None,
     };
     let scene = Scene { seed: arguments.seed.unwrap_or(defaults::SEED), ..Scene::default() };
-    serve(arguments, scene, vec![arguments.port], trace, |ports| {
+    serve(arguments, scene, vec![arguments.port], trace, None, |ports| {
         let port = ports.first().copied().unwrap_or(arguments.port);
         format!("Ready at {}:{port}. Press Ctrl+C to stop.\n", arguments.listen)
     })
@@ -122,8 +135,17 @@ fn simulate(arguments: &Arguments, program: &Path) -> Result<ExitCode, Failure> 
         }
         None => None,
     };
+    if arguments.ros2 {
+        let choice = ros2_world::Choice {
+            python: arguments.python.as_deref(),
+            speed: arguments.speed,
+            lockstep: arguments.lockstep,
+        };
+        let ports = vec![0; environment.robots.len()];
+        return serve(arguments, scene, ports, trace, Some(choice), |_| ros2_steps(arguments, program));
+    }
     let ports = environment.robots.iter().map(|robot| robot.port).collect();
-    serve(arguments, scene, ports, trace, |_| {
+    serve(arguments, scene, ports, trace, None, |_| {
         let mut places = output::table(["robot", "address", "port"]);
         for robot in &environment.robots {
             places.add_row([robot.name.clone(), arguments.listen.to_string(), robot.port.to_string()]);
@@ -133,15 +155,19 @@ fn simulate(arguments: &Arguments, program: &Path) -> Result<ExitCode, Failure> 
     })
 }
 
-/// Runs the simulator until an interrupt; `greeting` gets its ports.
+/// Runs the simulator until an interrupt, as a node of ROS 2 if that is chosen; `greeting` gets its ports.
 fn serve(
     arguments: &Arguments,
     scene: Scene,
     ports: Vec<u16>,
     mut trace: Option<GrowingFile>,
+    node: Option<ros2_world::Choice<'_>>,
     greeting: impl FnOnce(&[u16]) -> String,
 ) -> Result<ExitCode, Failure> {
+    let robots = scene.robots.clone();
+    let token = node.as_ref().map(|_| format!("{}-ros2", std::process::id()));
     let options = Options {
+        token: token.clone(),
         address: arguments.listen,
         ports,
         speed: arguments.speed,
@@ -153,16 +179,27 @@ fn serve(
     runtime.map_err(|error| unstarted(&error))?.block_on(async {
         let mut interrupts = Interrupts::listen().map_err(|error| unstarted(&error))?;
         let simulator = Simulator::start(scene, &options).map_err(|error| Failure::new(error.to_string()))?;
+        let mut node = match node.zip(token) {
+            Some((choice, token)) => tokio::select! {
+                node = Node::start(&choice, &robots, simulator.ports(), &token) => Some(node?),
+                () = interrupts.next() => return Ok(()),
+            },
+            None => None,
+        };
         output::print(&greeting(simulator.ports()))?;
         let mut writes = interval(WRITE_PERIOD);
         writes.set_missed_tick_behavior(MissedTickBehavior::Delay);
         loop {
             tokio::select! {
                 () = interrupts.next() => break,
+                failure = ended(&mut node) => return Err(failure),
                 _ = writes.tick(), if trace.is_some() => if let Some(trace) = &mut trace {
                     trace.add(&lines(&simulator.take_trace()))?;
                 },
             }
+        }
+        if let Some(node) = node {
+            node.stop().await;
         }
         let rest = simulator.stop();
         let Some(mut trace) = trace else { return Ok(()) };
@@ -170,6 +207,28 @@ fn serve(
         Ok::<(), Failure>(trace.finish()?)
     })?;
     Ok(ExitCode::from(interrupt::EXIT_CODE))
+}
+
+/// Resolves when there is a node that has ended by itself.
+async fn ended(node: &mut Option<Node>) -> Failure {
+    match node {
+        Some(node) => node.ended().await,
+        None => std::future::pending().await,
+    }
+}
+
+/// How to stop the node, and how to run a script that drives in it.
+fn ros2_steps(arguments: &Arguments, program: &Path) -> String {
+    let option = |name: &str, value: Option<&Path>| {
+        value.map(|value| format!(" {name} {}", quoted(value))).unwrap_or_default()
+    };
+    let options =
+        [option("--python", arguments.python.as_deref()), option("--scene", arguments.scene.as_deref())];
+    format!(
+        "Ready. Press Ctrl+C to stop.\nTo drive in it, run this in another terminal:\n\n    pydslrep run {} --target ros2 --sim-time{}\n",
+        quoted(program),
+        options.concat(),
+    )
 }
 
 /// How to stop the simulator, and how to run the script: `script` is where `build` writes it.

@@ -15,7 +15,8 @@ pub(crate) fn describe(environment: &str, scene: &Scene, reach: [Pose; 2]) -> Va
     })
 }
 
-fn robot(robot: &Robot) -> Value {
+/// A robot with its parts.
+pub(crate) fn robot(robot: &Robot) -> Value {
     // A wheel and a sensor may have one name and two paths; both are found at either.
     let paths = |name: &str| robot.objects.get(name).map_or(&[][..], Vec::as_slice);
     let positions = robot.geometry.wheel_positions(robot.drive);

@@ -20,10 +20,10 @@ use crate::run::progress::Progress;
 use crate::run::reporter::Reporter;
 
 /// Starts a script: adds folders to those that Python imports from, also where it is isolated.
-const BOOT: &str = include_str!("../../python/boot.py");
+pub(crate) const BOOT: &str = include_str!("../../python/boot.py");
 
 /// The environment variable with a run's token (`python/pydslrep_runtime/remote_api.py`).
-const TOKEN: &str = "PYDSLREP_RUN";
+pub(crate) const TOKEN: &str = "PYDSLREP_RUN";
 
 /// How often the simulator is polled.
 const POLL_PERIOD: Duration = Duration::from_millis(50);

@@ -183,7 +183,7 @@ pub(super) fn port(context: &CursorContext<'_>, own: Option<EntityId>) -> Option
     let first = target.default_port();
     let port = match taken[..] {
         [] => Some(first),
-        [shared] if target == Target::CoppeliaSim => Some(shared),
+        [shared] if target != Target::VRep => Some(shared),
         [.., highest] => highest.checked_add(1),
     };
     let free = |port: &u16| taken.binary_search(port).is_err();

@@ -53,7 +53,7 @@ fn headers(schema: &Schema, names: &Names) -> Vec<Header> {
             NAME => {
                 names.0.iter().flat_map(|(name, inner)| before(name, expand(rest, inner, true))).collect()
             }
-            part if is_named => {
+            part if is_named && !rest.is_empty() => {
                 names.get(part).map_or_else(Vec::new, |inner| before(part, expand(rest, inner, true)))
             }
             part => before(part, expand(rest, names, false)),
@@ -333,6 +333,7 @@ mod tests {
             &expect![[r#"
                 "coppeliasim" | CoppeliaSim 4.6 or later, by its ZeroMQ remote API (default) | "\"coppeliasim\""
                 "vrep" | V-REP 3, by its legacy remote API: each robot has a port of its own | "\"vrep\""
+                "ros2" | ROS 2, by the topics of a robot's driver: Jazzy or Kilted, through rclpy | "\"ros2\""
             "#]],
         );
         check(
@@ -381,12 +382,13 @@ mod tests {
         let found = toml_completions(TomlFile::Settings, &text, offset, CompletionTrigger::Invoked).remove(0);
         let Documentation::Text(text) = &found.documentation else { panic!("{found:?}") };
         expect![[r#"
-            **`target`**: `"coppeliasim"` or `"vrep"`
+            **`target`**: `"coppeliasim"`, `"vrep"` or `"ros2"`
 
             The simulator that scripts are for.
 
             * `"coppeliasim"`: CoppeliaSim 4.6 or later, by its ZeroMQ remote API
             * `"vrep"`: V-REP 3, by its legacy remote API: each robot has a port of its own
+            * `"ros2"`: ROS 2, by the topics of a robot's driver: Jazzy or Kilted, through rclpy
 
             Default: `"coppeliasim"`
         "#]]
@@ -438,6 +440,8 @@ mod tests {
                 [robots."größe".wheels.b] | a table | "[robots.\"größe\".wheels.b]\n$0"
                 [robots.rover.sensors.front] | a table | "[robots.rover.sensors.front]\n$0"
                 [robots.rover.sensors.back] | a table | "[robots.rover.sensors.back]\n$0"
+                [robots.rover.ros2] | a table | "[robots.rover.ros2]\n$0"
+                [robots."größe".ros2] | a table | "[robots.\"größe\".ros2]\n$0"
             "#]],
         );
         check_scene(
@@ -455,6 +459,8 @@ mod tests {
                 robots."größe".wheels.a | a table | "robots.\"größe\".wheels.a]"
                 robots."größe".wheels.b | a table | "robots.\"größe\".wheels.b]"
                 robots.rover.sensors.front | a table | "robots.rover.sensors.front]"
+                robots.rover.ros2 | a table | "robots.rover.ros2]"
+                robots."größe".ros2 | a table | "robots.\"größe\".ros2]"
             "#]],
         );
         check_scene(
@@ -482,6 +488,8 @@ mod tests {
                 "größe".wheels.b | a table | "\"größe\".wheels.b]"
                 rover.sensors.front | a table | "rover.sensors.front]"
                 rover.sensors.back | a table | "rover.sensors.back]"
+                rover.ros2 | a table | "rover.ros2]"
+                "größe".ros2 | a table | "\"größe\".ros2]"
             "#]],
         );
         check_scene(
@@ -531,6 +539,8 @@ mod tests {
                 [robots."größe".wheels.b] | a table | "[robots.\"größe\".wheels.b]\n$0"
                 [robots.rover.sensors.front] | a table | "[robots.rover.sensors.front]\n$0"
                 [robots.rover.sensors.back] | a table | "[robots.rover.sensors.back]\n$0"
+                [robots.rover.ros2] | a table | "[robots.rover.ros2]\n$0"
+                [robots."größe".ros2] | a table | "[robots.\"größe\".ros2]\n$0"
             "#]],
         );
         check_scene(

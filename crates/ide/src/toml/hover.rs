@@ -42,12 +42,13 @@ mod tests {
             &expect![[r#"
             target
             ---
-            **`target`**: `"coppeliasim"` or `"vrep"`
+            **`target`**: `"coppeliasim"`, `"vrep"` or `"ros2"`
 
             The simulator that scripts are for.
 
             * `"coppeliasim"`: CoppeliaSim 4.6 or later, by its ZeroMQ remote API
             * `"vrep"`: V-REP 3, by its legacy remote API: each robot has a port of its own
+            * `"ros2"`: ROS 2, by the topics of a robot's driver: Jazzy or Kilted, through rclpy
 
             Default: `"coppeliasim"`
         "#]],

@@ -13,7 +13,7 @@ pub static SCHEMA: Schema = Schema {
     too_large: "is beyond 1000 km, or not finite",
 };
 
-const TABLES: [Table; 9] = [
+const TABLES: [Table; 10] = [
     Table {
         name: "world",
         kind: TableKind::Once,
@@ -243,6 +243,81 @@ const TABLES: [Table; 9] = [
             .example("\"/PioneerP3DX/ultrasonicSensor[4]\""),
         ],
     },
+    Table {
+        name: "robots.NAME.ros2",
+        kind: TableKind::Once,
+        summary: "What a robot's driver is like in ROS 2: for scripts of the target `ros2` and for `pydslrep sim --ros2`. \
+                  Names of topics are relative to the `namespace` unless they begin with `/`.",
+        keys: &[
+            key("namespace", NAMESPACE, "Where its topics are; `/` is for those without a namespace.")
+                .default("`/` and its name")
+                .example("\"/\""),
+            key("cmd-vel", TOPIC, "Where it takes commands: `geometry_msgs/Twist`.")
+                .default("`\"cmd_vel\"`")
+                .example("\"diff_drive/cmd_vel\""),
+            key(
+                "stamped",
+                Values::Flag,
+                "Whether commands are `geometry_msgs/TwistStamped`, as `diff_drive_controller` takes them from Jazzy on.",
+            )
+            .default("`false`")
+            .example("true"),
+            key("odom", TOPIC, "Where its poses come from: `nav_msgs/Odometry`.")
+                .default("`\"odom\"`")
+                .example("\"odometry/filtered\""),
+            key(
+                "pose",
+                TOPIC,
+                "Where its poses come from in place of odometry: `geometry_msgs/PoseWithCovarianceStamped`, as \
+                 localisation publishes it.",
+            )
+            .default("by `odom`")
+            .example("\"/amcl_pose\""),
+            key(
+                "ranges",
+                TEMPLATE,
+                "Where the readings of its sensors come from: `sensor_msgs/Range`, with the name of a sensor in place of \
+                 `{sensor}`.",
+            )
+            .default("`\"range/{sensor}\"`")
+            .example("\"ir/{sensor}\""),
+            key(
+                "scan",
+                TOPIC,
+                "A `sensor_msgs/LaserScan` of which its sensors are sectors, by their `bearing`, `cone` and `range`: for \
+                 robots that have no others.",
+            )
+            .default("sensors have topics of their own")
+            .example("\"scan\""),
+            key("base-frame", FRAME, "The frame of its wheels' centre, for commands with a stamp and for `sim --ros2`.")
+                .default("`\"base_link\"`")
+                .example("\"base_footprint\""),
+            key("odom-frame", FRAME, "The frame of its odometry, for `sim --ros2`.")
+                .default("`\"odom\"`")
+                .example("\"rover/odom\""),
+            key(
+                "qos",
+                Values::Words(&QOS),
+                "How its readings are asked for. With the default, scripts also hear publishers that are reliable.",
+            )
+            .default("`\"best-effort\"`")
+            .example("\"reliable\""),
+            key(
+                "track",
+                Values::ABOVE_ZERO,
+                "The distance between its left and right wheels, for the speed of its turns.",
+            )
+            .default("that of the robot")
+            .example("0.287"),
+            key(
+                "speed-limit",
+                Values::ABOVE_ZERO,
+                "The greatest speed that scripts command, per second: that of the rims of its wheels.",
+            )
+            .default("`0.5`")
+            .example("0.22"),
+        ],
+    },
 ];
 
 const NAME: Key = key("name", TEXT, "Its name in messages and for clients of the remote API.")
@@ -284,6 +359,11 @@ const FRAMES: [Word; 5] = [
     Word { word: Frame::Static.word(), summary: "stays at the start; what moves is below it" },
 ];
 
+const QOS: [Word; 2] = [
+    Word { word: "best-effort", summary: "what is lost is not sent again, as drivers of sensors do" },
+    Word { word: "reliable", summary: "what is lost is sent again; publishers must be reliable, too" },
+];
+
 const COUNT: Values = Values::Number(
     "a whole number from 0",
     Range { max: 4_294_967_295.0, is_whole: true, ..Range::FROM_ZERO },
@@ -301,6 +381,11 @@ const POSE: Values = Values::Numbers("a pose `[x, y, heading]`", Range::ANY, (2,
 const POINTS: Values = Values::Rows("a list of at least three points `[x, y]`", 3, 2);
 const WAYPOINTS: Values = Values::Rows("a list of at least one `[t, x, y]`", 1, 3);
 const PATH: Values = Values::Text("the path of an object", r"^(/[^/]*[^/\s][^/]*)+$", path);
+const NAMESPACE: Values = Values::Text("a namespace", r"^/?([A-Za-z_]\w*(/[A-Za-z_]\w*)*)?$", namespace);
+const TOPIC: Values = Values::Text("the name of a topic", r"^/?[A-Za-z_]\w*(/[A-Za-z_]\w*)*$", topic);
+const TEMPLATE: Values =
+    Values::Text("the name of topics", r"^/?[A-Za-z_{][\w{}]*(/[A-Za-z_{][\w{}]*)*$", template);
+const FRAME: Values = Values::Text("the name of a frame", r"^\S+$", frame);
 const TEXT: Values = Values::Text("a string", r"^[^/]*\S[^/]*$", name);
 
 /// A path from the top of the scene, as in CoppeliaSim: `/PioneerP3DX/leftMotor`.
@@ -310,6 +395,43 @@ fn path(text: &str) -> Result<String, Refusal> {
         Some(names) if names.split('/').all(is_name) => Ok(text.to_owned()),
         _ => Err("must be a path of names, each after a `/`".to_owned().into()),
     }
+}
+
+/// Names of topics, as ROS 2 takes them: letters, digits and `_`, none of which begins with a digit.
+fn is_topic(text: &str) -> bool {
+    let is_token = |token: &str| {
+        token.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
+            && token.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+    };
+    text.strip_prefix('/').unwrap_or(text).split('/').all(is_token)
+}
+
+fn topic(text: &str) -> Result<String, Refusal> {
+    if is_topic(text) { Ok(text.to_owned()) } else { Err(not_a_topic()) }
+}
+
+fn not_a_topic() -> Refusal {
+    "must consist of letters, digits and `_`, with `/` between names".to_owned().into()
+}
+
+fn template(text: &str) -> Result<String, Refusal> {
+    if is_topic(&text.replace("{sensor}", "sensor")) { Ok(text.to_owned()) } else { Err(not_a_topic()) }
+}
+
+/// In its canonical form, a namespace begins with `/`.
+fn namespace(text: &str) -> Result<String, Refusal> {
+    match text.strip_prefix('/').unwrap_or(text) {
+        "" => Ok("/".to_owned()),
+        name if is_topic(name) && !name.starts_with('/') => Ok(format!("/{name}")),
+        _ => Err(not_a_topic()),
+    }
+}
+
+fn frame(text: &str) -> Result<String, Refusal> {
+    if text.is_empty() || text.chars().any(|c| c.is_whitespace() || c.is_control()) {
+        return Err("must not be empty, and must not contain spaces".to_owned().into());
+    }
+    Ok(text.to_owned())
 }
 
 /// Clients of the remote API address objects by paths with `/`.

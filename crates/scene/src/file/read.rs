@@ -6,7 +6,7 @@ use pydslrep_schema::{Contents, Names, Problem, ProblemKind, Section, Span};
 use super::keys::SCHEMA;
 use crate::{
     Body, Frame, Noise, Obstacle, Robot, Scene, Shape, Thing, Trajectory, TrajectoryError, Waypoint,
-    defaults, mounts_by_name, space,
+    defaults, mounts_by_name, ros2, space,
 };
 
 /// Reads a scene file for robots on an empty floor. What is wrong is left out; if the text is not TOML, everything.
@@ -76,7 +76,8 @@ impl Reader {
             ("robots.NAME", Some(robot)) => self.robot(robot, section),
             ("robots.NAME.sensors.NAME", Some(robot)) => self.sensor(robot, section),
             ("robots.NAME.wheels.NAME", Some(robot)) => self.object(robot, section),
-            ("robots.NAME" | "robots.NAME.sensors.NAME" | "robots.NAME.wheels.NAME", None) => {}
+            ("robots.NAME.ros2", Some(robot)) => self.scene.robots[robot].ros2 = ros2::read(section),
+            (name, None) if name.starts_with("robots.") => {}
             _ => self.obstacle(section),
         }
     }

@@ -1,7 +1,7 @@
 //! Environments to generate scripts from.
 
 use pydslrep_analysis::environment::{
-    Action, ActionKind, Environment, Movement, Objects, Robot, Sensor, SensorKind, Source, Wheel,
+    Action, ActionKind, Environment, Movement, Objects, Robot, Ros2, Sensor, SensorKind, Source, Wheel,
 };
 use pydslrep_kinematics::Drive;
 
@@ -21,6 +21,8 @@ pub(crate) fn robot(name: &str, drive: Drive, port: u16) -> Robot {
         drive,
         port,
         objects: Objects::new(),
+        ros2: Ros2::new(),
+        mounts: Vec::new(),
         wheels: wheels.iter().map(|&name| Wheel { name: name.to_owned(), radius: 0.045 }).collect(),
         sensors: Vec::new(),
         source: line(4),

@@ -159,8 +159,7 @@ struct Unsettled {
 /// settle is marked where the client pulls, and otherwise left out.
 pub(crate) fn of_document(state: &State, document: Document<'_>) -> Vec<Diagnostic> {
     let found = document.file.map(|file| state.database().diagnostics(file)).unwrap_or_default();
-    let statements =
-        if found.is_empty() { Vec::new() } else { state.statements_being_typed(document) };
+    let statements = if found.is_empty() { Vec::new() } else { state.statements_being_typed(document) };
     let in_program = found.iter().filter_map(|diagnostic| {
         let Some(statement) = statements.iter().find(|statement| statement.settles(diagnostic)) else {
             return convert(state, document, diagnostic);

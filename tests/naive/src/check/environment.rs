@@ -137,13 +137,22 @@ fn script_name(program: &Program, entity: &Entity, findings: &mut Vec<Finding>) 
     }
 }
 
-/// The modules of Python 3.11, of the clients of both remote APIs, the runtime, and what Python runs at start.
+/// The modules of Python 3.11, of the clients of all targets, the runtime, and what Python runs at start.
 fn is_module(name: &str) -> bool {
     const CLIENT: [&str; 8] =
         ["coppeliasim_zmqremoteapi_client", "zmq", "cbor", "cbor2", "sim", "simConst", "vrep", "vrepConst"];
     const OTHERS: [&str; 3] = ["pydslrep_runtime", "sitecustomize", "usercustomize"];
+    const ROS: [&str; 7] = [
+        "rclpy",
+        "builtin_interfaces",
+        "geometry_msgs",
+        "nav_msgs",
+        "rosgraph_msgs",
+        "sensor_msgs",
+        "std_msgs",
+    ];
     let standard = include_str!("../../standard_modules.txt").split_whitespace();
-    standard.chain(CLIENT).chain(OTHERS).any(|module| module == name)
+    standard.chain(CLIENT).chain(OTHERS).chain(ROS).any(|module| module == name)
 }
 
 /// Device names on Windows, ignoring case.

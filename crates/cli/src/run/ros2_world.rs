@@ -1,0 +1,132 @@
+//! The embedded simulator as a node of ROS 2: a Python process (`pydslrep_runtime.ros2_world`) that steps it.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Stdio;
+use std::time::Duration;
+
+use pydslrep_output::{TemporaryFolder, provide_runtime};
+use pydslrep_scene::{Robot, Ros2Value};
+use serde_json::{Map, Value, json};
+use tokio::io::{AsyncBufReadExt, AsyncReadExt, BufReader};
+use tokio::process::{Child, Command};
+use tokio::time::timeout;
+
+use crate::failure::Failure;
+use crate::run::interrupt::interrupt_process;
+use crate::run::python;
+use crate::run::scene_description;
+use crate::run::script::{BOOT, TOKEN};
+
+/// The script of the process.
+const SCRIPT: &str = "from pydslrep_runtime.ros2_world import main\n\nmain()\n";
+
+/// The node leaves within this time.
+const STOP_LIMIT: Duration = Duration::from_secs(5);
+
+/// At most this much of what it says is read, bytes.
+const MAX_STDERR: u64 = 1 << 16;
+
+/// What the node is like.
+#[derive(Debug, Clone)]
+pub(crate) struct Choice<'a> {
+    /// The Python that can import rclpy.
+    pub(crate) python: Option<&'a Path>,
+    /// Simulated seconds per second.
+    pub(crate) speed: f64,
+    /// Whether a script steps the world.
+    pub(crate) lockstep: bool,
+}
+
+/// A node that runs.
+pub(crate) struct Node {
+    child: Child,
+    _folder: TemporaryFolder,
+}
+
+impl Node {
+    /// Starts the node for robots at these ports of a simulator, and waits until it is ready.
+    ///
+    /// # Errors
+    /// If its Python cannot be started, or cannot import what it needs.
+    pub(crate) async fn start(
+        choice: &Choice<'_>,
+        robots: &[Robot],
+        ports: &[u16],
+        token: &str,
+    ) -> Result<Self, Failure> {
+        let python = python::interpreter(choice.python).await?;
+        let folder = TemporaryFolder::new("run-").map_err(|error| unstarted(&error))?;
+        let runtime = python::cache().and_then(|cache| Ok(provide_runtime(&cache)?));
+        let runtime = runtime.or_else(|_| provide_runtime(folder.path()))?;
+        let described: Vec<Value> =
+            robots.iter().zip(ports).map(|(robot, port)| described(robot, *port)).collect();
+        let script = write(folder.path().join("world.py"), SCRIPT)?;
+        let robots = write(folder.path().join("robots.json"), &Value::from(described).to_string())?;
+        let mut command = Command::new(&python);
+        command.args(["-X", "utf8", "-c", BOOT]).arg(&runtime).arg("").arg(script).arg(robots);
+        command.arg("--speed").arg(choice.speed.to_string());
+        command.args(choice.lockstep.then_some("--lockstep"));
+        command.env(TOKEN, token);
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).kill_on_drop(true);
+        // Ctrl-C reaches it once: from this process.
+        #[cfg(unix)]
+        command.process_group(0);
+        let child = command.spawn().map_err(|error| unstarted(&error))?;
+        let mut node = Self { child, _folder: folder };
+        node.await_ready().await?;
+        Ok(node)
+    }
+
+    /// Resolves when the node has ended by itself, with the reason.
+    pub(crate) async fn ended(&mut self) -> Failure {
+        let mut said = Vec::new();
+        if let Some(stderr) = &mut self.child.stderr {
+            let _ = stderr.take(MAX_STDERR).read_to_end(&mut said).await;
+        }
+        let said = String::from_utf8_lossy(&said);
+        // A traceback ends with what went wrong.
+        let reason = said.lines().rfind(|line| !line.trim().is_empty()).unwrap_or("the node has ended");
+        Failure::new(reason.strip_prefix("error: ").unwrap_or(reason))
+    }
+
+    /// Ends the node.
+    pub(crate) async fn stop(mut self) {
+        interrupt_process(self.child.id());
+        let _ = timeout(STOP_LIMIT, self.child.wait()).await;
+    }
+
+    async fn await_ready(&mut self) -> Result<(), Failure> {
+        if let Some(stdout) = self.child.stdout.take() {
+            let line = BufReader::new(stdout).lines().next_line().await;
+            if line.ok().flatten().is_some() {
+                return Ok(());
+            }
+        }
+        Err(self.ended().await)
+    }
+}
+
+fn write(path: PathBuf, text: &str) -> Result<PathBuf, Failure> {
+    fs::write(&path, text).map_err(|error| Failure::unwritten(&path, &error))?;
+    Ok(path)
+}
+
+/// A robot, as `ros2_world.py` reads it.
+fn described(robot: &Robot, port: u16) -> Value {
+    let mut described = scene_description::robot(robot);
+    let setting = |value: &Ros2Value| match value {
+        Ros2Value::Text(text) => json!(text),
+        Ros2Value::Number(number) => json!(number),
+        Ros2Value::Flag(flag) => json!(flag),
+    };
+    let settings: Map<String, Value> =
+        robot.ros2().iter().map(|(key, value)| (key.replace('-', "_"), setting(value))).collect();
+    described["port"] = json!(port);
+    described["ros2"] = Value::Object(settings);
+    described
+}
+
+fn unstarted(error: &dyn std::fmt::Display) -> Failure {
+    Failure::new(format!("cannot start the node: {error}"))
+}

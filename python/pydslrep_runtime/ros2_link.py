@@ -1,0 +1,122 @@
+"""A node of ROS 2: subscriptions, publishers, and who else is there."""
+
+import os
+from collections.abc import Callable
+from typing import Any
+
+from .errors import SetupError
+from .ros2_topics import Topic
+
+try:
+    import rclpy
+    from rclpy.duration import Duration
+    from rclpy.executors import SingleThreadedExecutor
+    from rclpy.node import Node
+    from rclpy.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
+except ImportError as error:
+    raise SetupError(
+        f"this Python cannot import rclpy ({error}). Source your ROS 2 first (`source /opt/ros/jazzy/setup.bash`), or "
+        'install it with `pip install "ros-rclpy[fastrtps]" ros-geometry-msgs ros-nav-msgs ros-sensor-msgs`; '
+        "`pydslrep run --python PATH` chooses another Python"
+    ) from error
+
+MAX_MESSAGES = 1000  # that are taken at once; who sends more never stops
+LAST_WORDS = 0.5  # s for what was published last to arrive
+
+
+class Link:
+    """A node, whose messages are taken one after the other when its owner wants them."""
+
+    def __init__(self, name: str) -> None:
+        """Raises SetupError if there is no middleware."""
+        self.name = f"{name}_{os.getpid()}"
+        try:
+            # Signals are the script's: it stops its robots first.
+            rclpy.init(args=[], signal_handler_options=rclpy.SignalHandlerOptions.NO)
+            self._node = Node(
+                self.name, start_parameter_services=False, enable_rosout=False
+            )
+        except Exception as error:
+            raise SetupError(
+                f"ROS 2 does not start: {error}. With the packages of PyPI, its middleware is `ros-rclpy[fastrtps]`"
+            ) from error
+        self._executor = SingleThreadedExecutor()
+        self._executor.add_node(self._node)
+        self._taken = 0
+
+    def subscribe(
+        self,
+        topic: Topic,
+        take: Callable[[Any], None],
+        *,
+        reliable: bool,
+        depth: int = 10,
+    ) -> None:
+        """Passes on the messages of a topic. More than one can wait: else a late one would replace a newer one."""
+
+        def count(message: Any) -> None:
+            self._taken += 1
+            take(message)
+
+        self._node.create_subscription(
+            topic.type.load(), topic.name, count, profile(depth, reliable=reliable)
+        )
+
+    def publisher(self, topic: Topic) -> Any:
+        """What publishes on a topic, to listeners of any reliability."""
+        return self._node.create_publisher(
+            topic.type.load(), topic.name, profile(10, reliable=True)
+        )
+
+    def wait(self, limit: float) -> None:
+        """Takes a message, or what else there is to do; waits for it up to `limit` seconds of real time."""
+        self._executor.spin_once(timeout_sec=max(limit, 0.0))
+
+    def take_all(self) -> None:
+        """Takes all messages that have arrived."""
+        for _ in range(MAX_MESSAGES):
+            before = self._taken
+            self.wait(0.0)
+            if self._taken == before:
+                return
+
+    def publishers(self, topic: str) -> list[Any]:
+        """Who else publishes on a topic."""
+        return self._others(self._node.get_publishers_info_by_topic(topic))
+
+    def listeners(self, topic: str) -> list[Any]:
+        """Who else listens to a topic."""
+        return self._others(self._node.get_subscriptions_info_by_topic(topic))
+
+    def topics(self) -> list[str]:
+        """The topics on which somebody else publishes, or to which somebody else listens."""
+        names = [name for name, _ in self._node.get_topic_names_and_types()]
+        return sorted(
+            name for name in names if self.publishers(name) or self.listeners(name)
+        )
+
+    def close(self, *publishers: Any) -> None:
+        """Waits until everybody has what these published last, and leaves."""
+        for publisher in publishers:
+            publisher.wait_for_all_acked(Duration(seconds=LAST_WORDS))
+        self._node.destroy_node()
+        rclpy.try_shutdown()
+
+    def _others(self, endpoints: list[Any]) -> list[Any]:
+        return [each for each in endpoints if each.node_name != self.name]
+
+
+def profile(depth: int, *, reliable: bool) -> Any:
+    """A quality of service."""
+    return QoSProfile(
+        history=HistoryPolicy.KEEP_LAST,
+        depth=depth,
+        reliability=ReliabilityPolicy.RELIABLE
+        if reliable
+        else ReliabilityPolicy.BEST_EFFORT,
+    )
+
+
+def is_best_effort(endpoint: Any) -> bool:
+    """Whether a publisher does not send again what was lost."""
+    return bool(endpoint.qos_profile.reliability == ReliabilityPolicy.BEST_EFFORT)

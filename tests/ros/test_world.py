@@ -1,0 +1,194 @@
+"""`pydslrep sim --ros2` and `pydslrep run --target ros2`: the way from a program to a robot that has driven."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import pytest
+import rclpy
+from conftest import END_LIMIT, ROOT, Start, said
+from geometry_msgs.msg import Twist
+from nav_msgs.msg import Odometry
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.qos import qos_profile_sensor_data
+
+PATIENCE = 600  # s for a run on a machine that does much else
+STANDS = 0.6  # s of simulated time after its last command within which a robot stands
+OFF = 0.005, 0.5  # m and degrees, as in the embedded simulator without ROS 2
+
+SHORT = """wheel l with radius 4.5
+wheel r with radius 4.5
+sensor front : distance
+robot rover with port 23000 has { l r } wheels with sensors { front }
+movement m of rover { move 30 centimeters turn right move 2 meters until { front } detect within 50 centimeters }
+environment yard has { rover } robots with { m } moves
+"""
+SCENE = "[[wall]]\nfrom = [-1, -0.9]\nto = [2, -0.9]\n"
+
+Drive = Callable[..., dict[str, Any]]
+
+
+@pytest.fixture
+def drive(command: str, start: Start, tmp_path: pathlib.Path) -> Drive:
+    """Drives a program in the embedded world as a node, in lockstep; returns the figures of the run."""
+
+    def drive(
+        program: pathlib.Path, *options: str, python: str = sys.executable
+    ) -> Any:
+        start_world(start, command, program, "--lockstep", *options)
+        figures = tmp_path / "figures.json"
+        run = subprocess.run(
+            [
+                *(command, "run", program, "--target", "ros2", "--sim-time"),
+                *("--python", python, "--figures", figures, "--no-progress"),
+                *options,
+            ],
+            capture_output=True,
+            text=True,
+            timeout=PATIENCE,
+        )
+        assert run.returncode == 0, run.stdout + run.stderr
+        return json.loads(figures.read_text(encoding="utf-8"))
+
+    return drive
+
+
+def start_world(
+    start: Start, command: str, program: pathlib.Path, *options: str
+) -> subprocess.Popen[str]:
+    """Starts the world, and returns when it is ready."""
+    world = start(
+        command, "sim", program, "--ros2", "--python", sys.executable, *options
+    )
+    assert world.stdout is not None
+    line = world.stdout.readline()
+    assert line.startswith("Ready"), line + said(world)
+    return world
+
+
+@pytest.fixture
+def short(tmp_path: pathlib.Path) -> pathlib.Path:
+    """A program with a turn and a condition, and its scene."""
+    program = tmp_path / "short.pyr"
+    program.write_text(SHORT, encoding="utf-8")
+    (tmp_path / "yard.scene.toml").write_text(SCENE, encoding="utf-8")
+    return program
+
+
+def test_a_program_drives_in_the_world(drive: Drive, short: pathlib.Path) -> None:
+    figures = drive(short)
+    (robot,) = figures["robots"]
+    # It stops before the wall, whose near side is at -0.85 m; the sensor is 0.15 m ahead of the middle.
+    x, y, _ = pose(robot)
+    assert x == pytest.approx(0.3, abs=OFF[0])
+    assert -0.25 < y < -0.15
+
+
+def pose(robot: dict[str, Any]) -> tuple[float, float, float]:
+    """Where a robot ends."""
+    end = robot["driven"]
+    return end["x"], end["y"], end["theta"]
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "tests/paper/table2_two_wheels.pyr",
+        "examples/wall.pyr",
+        pytest.param("tests/paper/table3_four_wheels.pyr", marks=pytest.mark.long),
+        pytest.param("tests/paper/table4_holonomic.pyr", marks=pytest.mark.long),
+        pytest.param("tests/paper/table6_sensors.pyr", marks=pytest.mark.long),
+    ],
+)
+def test_the_programs_of_the_article_drive(drive: Drive, name: str) -> None:
+    for robot in drive(ROOT / name)["robots"]:
+        assert (robot["off_mm"] or 0.0) <= 1000.0 * OFF[0], robot
+        assert (robot["off_deg"] or 0.0) <= OFF[1], robot
+
+
+@pytest.mark.long
+@pytest.mark.skipif(
+    not os.environ.get("ROS_PYTHON_JAZZY"), reason="there are no wheels of Jazzy"
+)
+def test_a_script_on_jazzy_drives_a_robot_on_kilted(
+    drive: Drive, short: pathlib.Path
+) -> None:
+    (robot,) = drive(short, python=os.environ["ROS_PYTHON_JAZZY"])["robots"]
+    assert pose(robot)[0] == pytest.approx(0.3, abs=OFF[0])
+
+
+class Witness:
+    """Hears what a robot is told and where it is."""
+
+    def __init__(self, name: str) -> None:
+        self.context = rclpy.Context()
+        self.context.init()
+        self.node = Node("witness", context=self.context, enable_rosout=False)
+        self.executor = SingleThreadedExecutor(context=self.context)
+        self.executor.add_node(self.node)
+        self.now = self.speed = self.told = 0.0  # s, m/s, s
+        self.node.create_subscription(
+            Odometry, f"/{name}/odom", self._hear, qos_profile_sensor_data
+        )
+        self.node.create_subscription(Twist, f"/{name}/cmd_vel", self._be_told, 10)
+
+    def _hear(self, message: Odometry) -> None:
+        stamp = message.header.stamp
+        self.now = stamp.sec + stamp.nanosec * 1e-9
+        twist = message.twist.twist
+        self.speed = math.hypot(twist.linear.x, twist.linear.y) + abs(twist.angular.z)
+
+    def _be_told(self, _message: Twist) -> None:
+        self.told = self.now
+
+    def wait(self, until: Callable[[], bool]) -> None:
+        limit = time.monotonic() + END_LIMIT
+        while not until():
+            assert time.monotonic() < limit, (self.now, self.speed, self.told)
+            self.executor.spin_once(timeout_sec=0.1)
+
+    def close(self) -> None:
+        self.node.destroy_node()
+        self.context.try_shutdown()
+
+
+@pytest.fixture
+def witness(domain: int) -> Iterator[Witness]:
+    witness = Witness("rover")
+    yield witness
+    witness.close()
+
+
+def test_the_robot_stands_when_its_script_is_killed(
+    command: str, start: Start, script: Start, short: pathlib.Path, witness: Witness
+) -> None:
+    start_world(start, command, short)
+    process = script("await rover.move(5)")
+    witness.wait(lambda: witness.speed > 0.05)
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    witness.wait(lambda: witness.speed < 1e-3)
+    assert witness.now - witness.told <= STANDS + 1e-6
+
+
+def test_a_python_without_ros_is_told(command: str, short: pathlib.Path) -> None:
+    """Without ROS 2 the run says what to do; nothing is installed."""
+    run = subprocess.run(
+        [command, "run", short, "--target", "ros2", "--python", "/usr/bin/python3"],
+        capture_output=True,
+        text=True,
+        env={"HOME": os.environ["HOME"], "PATH": os.environ["PATH"]},
+    )
+    assert run.returncode == 2, run.stdout
+    assert "cannot import rclpy" in run.stderr
+    assert "source /opt/ros/jazzy/setup.bash" in run.stderr
