@@ -1,10 +1,16 @@
 //! What a movement shows to those that do it: which movements it does itself, and how long it takes.
 
+use std::sync::LazyLock;
+
 use pydslrep_kinematics::{Drive, Model, SpeedProfile, Twist, motion};
 use pydslrep_syntax::ast::{self, Action, ActionKind, Entity, Repeat, Rounds};
 use smol_str::SmolStr;
 
+use crate::plan::default_model;
 use crate::resolve::DEFAULT_ANGLE;
+
+/// Robots of default size, in the order of [`Drive::ALL`]. Each action asks them, with each key.
+static MODELS: LazyLock<[Option<Model>; Drive::ALL.len()]> = LazyLock::new(|| Drive::ALL.map(default_model));
 
 /// What a movement adds up to. As long as it stays what it was, nobody who does the movement is looked at again.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -111,8 +117,8 @@ impl Time {
 
     /// A drive whose rims travel so far for each unit of `amount`.
     fn driven(amount: f64, speed: f64, rim_per_unit: impl Fn(&Model) -> f64) -> Self {
-        let seconds = Drive::ALL.map(|drive| {
-            let rim = crate::plan::default_model(drive).map_or(0.0, |model| rim_per_unit(&model));
+        let seconds = MODELS.each_ref().map(|model| {
+            let rim = model.as_ref().map_or(0.0, &rim_per_unit);
             let rest = if amount == 0.0 { 0.0 } else { motion::REST };
             SpeedProfile::new(amount.abs() * rim, speed, motion::RIM_ACCELERATION).duration() + rest
         });
