@@ -51,7 +51,10 @@ class Condition(NamedTuple):
     step: float = STEPS[0]
 
     def __str__(self) -> str:
-        return f"friction {self.friction:g}, wheels {self.wheels:g} %, step {1000 * self.step:g} ms"
+        parts = [f"friction {self.friction:g}"]
+        parts += [f"wheels {self.wheels:g} %"] * (self.wheels != WHEELS[0])
+        parts += [f"step {1000 * self.step:g} ms"] * (self.step != STEPS[0])
+        return ", ".join(parts)
 
     def apply(self, world: pathlib.Path) -> None:
         """Changes a world."""

@@ -141,7 +141,10 @@ def test_a_robot_in_front_of_a_wall_fails(command: str, tmp_path: pathlib.Path) 
         "[[wall]]\nfrom = [0.5, -1]\nto = [0.5, 1]\n",
     )
     done = command_line(
-        command, tmp_path, "run", "program.pyr", "--engine", "mujoco", "--no-progress"
+        command,
+        tmp_path,
+        *("run", "program.pyr", "--engine", "mujoco", "--no-progress"),
+        *("--python", sys.executable),
     )
     assert done.returncode == 1, done.stderr
     assert "no progress for 5 s" in done.stderr

@@ -5,7 +5,7 @@
 //!
 //! * [`Scene`] is the value. [`read`] makes one from a scene file; [`SCHEMA`] is the list of what it can contain.
 //! * [`Space`] computes distances and what a sensor sees; [`collisions`] finds those of planned paths.
-//! * [`mjcf()`] writes it for MuJoCo.
+//! * [`mjcf()`] writes it for `MuJoCo`.
 //! * [`Trajectory`] says where an obstacle that moves is at which time.
 
 mod collision;

@@ -76,7 +76,7 @@ fn tyre(radius: f64, width: f64) -> Element {
     )
 }
 
-/// What rolls on the floor, and on nothing of its own robot: the rollers of a wheel would brake each other, and MuJoCo lets
+/// What rolls on the floor, and on nothing of its own robot: the rollers of a wheel would brake each other, and `MuJoCo` lets
 /// those of one wheel collide.
 fn rolling(geom: Element) -> Element {
     geom.text("contype", "0")
