@@ -343,10 +343,15 @@ class Ros2Robot(Backend):
         """Says if somebody else drives the robot, too."""
         command = self._topics.command.name
         if others := self._link.publishers(command):
-            names = ", ".join(sorted({f"/{each.node_name}" for each in others}))
+            names = ", ".join(sorted({full_name(each) for each in others}))
             self._notes.say(
                 f"somebody else drives robot {self._spec.name}, too: {names} publishes on {command}. End one of them"
             )
+
+
+def full_name(endpoint: Any) -> str:
+    """The name of a node with its namespace."""
+    return f"{endpoint.node_namespace.rstrip('/')}/{endpoint.node_name}"
 
 
 def what_is_wrong(

@@ -21,6 +21,7 @@ except ImportError as error:
     ) from error
 
 MAX_MESSAGES = 1000  # that are taken at once; who sends more never stops
+OF_ALL_NODES = {"/parameter_events", "/rosout"}  # topics that say nothing of a robot
 LAST_WORDS = 0.5  # s for what was published last to arrive
 
 
@@ -92,7 +93,10 @@ class Link:
         """The topics on which somebody else publishes, or to which somebody else listens."""
         names = [name for name, _ in self._node.get_topic_names_and_types()]
         return sorted(
-            name for name in names if self.publishers(name) or self.listeners(name)
+            name
+            for name in names
+            if name not in OF_ALL_NODES
+            and (self.publishers(name) or self.listeners(name))
         )
 
     def close(self, *publishers: Any) -> None:

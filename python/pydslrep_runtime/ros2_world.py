@@ -23,7 +23,7 @@ from .pose import Pose, wrap_angle
 from .ros2_link import Link
 from .ros2_topics import CLOCK, Topic, Topics
 
-WATCHDOG = 0.4  # s of simulation time without a command, after which a robot stops
+WATCHDOG = 0.3  # s of simulation time without a command, after which a robot stops
 REPEAT_PERIOD = 0.25  # s of real time, after which a script that steps the world is told again how it is
 ULTRASOUND = 0  # sensor_msgs/Range.ULTRASOUND
 EXIT_CODE = 130  # after an interrupt
@@ -157,6 +157,8 @@ class World:
         clock = Topic(CLOCK, "clock")
         self._clock, self._clock_type = self._link.publisher(clock), clock.type.load()
         self._world.start()
+        # Before the first step, sensors have no readings.
+        self._world.advance()
         self._speed, self._due = speed, time.monotonic()
 
     def step(self, *, lockstep: bool) -> None:

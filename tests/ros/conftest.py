@@ -54,6 +54,9 @@ def domain(monkeypatch: pytest.MonkeyPatch) -> Iterator[int]:
             except BlockingIOError:
                 continue
             monkeypatch.setenv("ROS_DOMAIN_ID", str(number))
+            # On a busy machine, it takes a while until all know each other.
+            limit = f"CONNECT_TIMEOUT={END_LIMIT}"
+            monkeypatch.setenv("PYDSLREP_TIME_LIMITS", limit)
             yield number
             return
     pytest.fail("all domains are taken")

@@ -118,7 +118,9 @@ def test_signals_stop_it(script: Start, rover: FakeRobot, name: str) -> None:
 
 
 def test_an_orientation_that_is_none_is_told(script: Start, rover: FakeRobot) -> None:
-    rover._odometry = lambda: rover.odometry_type()  # type: ignore[method-assign]
+    message = rover.odometry_type()
+    message.pose.pose.orientation.w = 0.0
+    rover._odometry = lambda: message
     process = script(DRIVE)
     rover.drive(process)
     output = said(process)
