@@ -34,15 +34,39 @@ movement patrol of rover {
 environment yard has { rover } robots with { patrol } moves
 `;
 
+/** A movement, and what does it in another file. */
+const EDGE = `wheel wheelL with radius 4.5
+wheel wheelR with radius 4.5
+
+robot rover type tw with port 23000 has { wheelL wheelR } wheels
+
+movement edge of rover {
+  move 1 meters
+}
+`;
+const AWAY = `import "parts/edge.pyr"
+
+movement twice of rover {
+  repeat 2 times {
+    do edge
+  }
+}
+
+environment away has { rover } robots with { twice } moves
+`;
+
 test("a program with blocks", async (t) => {
   const size = { width: 1100, height: 720 };
-  await Stage.withApi({ files: { "nested.pyr": NESTED }, size }, "blocks.cjs", async (stage, results) => {
+  const files = { "nested.pyr": NESTED, "away.pyr": AWAY, "parts/edge.pyr": EDGE };
+  const settings = { "editor.linkedEditing": true };
+  await Stage.withApi({ files, settings, size }, "blocks.cjs", async (stage, results) => {
     for (const { name, error } of results) {
       await t.test(name, () => assert.equal(error, undefined, error));
     }
     assert.ok(results.length > 5);
     await t.test("hints are shown in blocks", () => hintsAreShown(stage));
     await t.test("roll up is offered for equal actions", () => rollUpIsOffered(stage));
+    await t.test("a movement and what does it are written at once", () => namesAreLinked(stage));
     await t.test("the heads of blocks stay in sight", () => headsStay(stage));
   });
 });
@@ -62,6 +86,18 @@ async function rollUpIsOffered(stage) {
   await stage.picture("refactoring");
   await offered.first().click();
   await stage.line("repeat 2 times").nth(1).waitFor();
+}
+
+async function namesAreLinked(stage) {
+  await stage.clickWord("do side", "side");
+  await stage.page.locator(".linked-editing-decoration").first().waitFor();
+  await stage.page.keyboard.type("x");
+  await until("both have changed", async () => {
+    const [, declared, done] = /movement (\w+) of rover.*do (\w+)/.exec(await stage.text()) ?? [];
+    return declared !== "side" && declared === done;
+  });
+  await stage.page.keyboard.press("Control+Z");
+  await stage.line("do side").first().waitFor();
 }
 
 async function headsStay(stage) {

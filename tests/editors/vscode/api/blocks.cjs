@@ -100,6 +100,23 @@ const tests = {
     assert.equal(edit.get(document.uri).length, 2);
   },
 
+  async "a movement of an imported file is done: its path is a link, and its name leads there"() {
+    const document = await open("away.pyr");
+    const links = await until("there is a link", async () => {
+      const found = await ask("executeLinkProvider", document.uri);
+      return found.length > 0 && found;
+    });
+    const name = ({ path }) => path.split("/").at(-1);
+    assert.deepEqual(links.map(({ range, target }) => [document.getText(range), name(target)]), [["parts/edge.pyr", "edge.pyr"]]);
+    const place = at(document, "do edge", 3);
+    const [definition] = await ask("executeDefinitionProvider", document.uri, place);
+    assert.equal(name(definition.targetUri ?? definition.uri), "edge.pyr");
+    const references = await ask("executeReferenceProvider", document.uri, place);
+    assert.deepEqual(references.map(({ uri }) => name(uri)).sort(), ["away.pyr", "edge.pyr"]);
+    // The tests that follow look at it.
+    await nested();
+  },
+
   async "the call hierarchy has movements that are done"() {
     const document = await nested();
     const [side] = await ask("prepareCallHierarchy", document.uri, use(document));
