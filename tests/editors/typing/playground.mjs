@@ -62,7 +62,7 @@ async function close() {
 }
 
 await answer(ACTIONS, async () => {
-  await playground?.page.screenshot({ path: path.join(OUT, `typing-failed-${Date.now()}.png`) });
+  await playground?.page.screenshot({ path: path.join(OUT, `typing-failed-${process.pid}.png`) });
   await close();
 });
 await close();
