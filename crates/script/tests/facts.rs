@@ -47,14 +47,13 @@ WHEELBASE = {wheelbase:?}  # m between front and rear wheels, unless a scene has
 
 /// The defaults of the keys of scenes that have one.
 fn ros2() -> String {
-    let keys = SCHEMA.table("robots.NAME.ros2").expect("a table").keys.iter();
+    let keys = SCHEMA.table("robots.NAME.ros2").into_iter().flat_map(|table| table.keys);
     let defaults = keys.filter_map(|key| Some((key.name, key.default_value()?)));
-    let mut text = String::new();
-    for (name, value) in defaults {
+    let line = |(name, value): (&str, &str)| {
         let value = if value == "false" { "False" } else { value };
-        writeln!(text, "ROS2_{} = {value}", name.to_uppercase().replace('-', "_")).expect("a string");
-    }
-    text
+        format!("ROS2_{} = {value}\n", name.to_uppercase().replace('-', "_"))
+    };
+    defaults.map(line).collect()
 }
 
 fn robot_types() -> String {

@@ -862,7 +862,7 @@ mod tests {
                 obstacles: vec![wall.clone()],
                 noise,
                 seed,
-                collisions: true,
+                ..Scene::default()
             })
             .unwrap();
             let mut first = None;

@@ -599,7 +599,7 @@ mod tests {
             toml_completions(TomlFile::Scene(&database, environment), text, end, CompletionTrigger::Invoked)
         };
         let tables = at_end("");
-        assert_eq!(tables.len(), 6 + 2 + 4 + 2);
+        assert_eq!(tables.len(), 6 + 2 * 2 + 4 + 2);
         for table in tables {
             let header = table.insert.replace("$0", "");
             for key in at_end(&header).into_iter().filter(|key| !key.label.starts_with('[')) {

@@ -131,7 +131,7 @@ fn time_unit(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> Optio
         .problem(place.span, format!("times are in `seconds`, not `{found}`"))
         .help("convert the number and write `seconds`");
     let (_, number) = place.before(1)?;
-    let Some(value) = converted(&place.context.text(number), factor) else { return Some(problem) };
+    let Some(value) = converted(place.context.text(number), factor) else { return Some(problem) };
     let text = format!("{value} seconds");
     let edit = place.context.replace(number.to(place.span), text.clone());
     Some(problem.suggestion(format!("change to `{text}`"), [edit]))
@@ -183,7 +183,7 @@ fn needless_unit(place: &Place<'_, '_>, found: &str) -> Option<Problem> {
         "m" | "meter" | "meters" | "metres" => 100.0,
         _ => return Some(problem),
     };
-    let converted = converted(&place.context.text(number_span), factor).filter(|_| length);
+    let converted = converted(place.context.text(number_span), factor).filter(|_| length);
     Some(match converted {
         Some(value) => {
             let edit = place.context.replace(number_span.to(whole), value.clone());
@@ -336,7 +336,7 @@ fn glued_to_number(place: &Place<'_, '_>, expected: &[Expected]) -> Option<Probl
     let units = is_unit(TokenKind::Meters)
         || is_unit(TokenKind::Seconds)
         || is_unit(TokenKind::Times)
-        || needless_unit(place, &place.written()).is_some();
+        || needless_unit(place, place.written()).is_some();
     let known = units && !place.written().contains(|c: char| c.is_ascii_digit());
     (glued && !known && place.here() == Some(TokenKind::Name)).then(|| {
         let whole = before.to(place.span);
