@@ -105,7 +105,7 @@ def pose(robot: dict[str, Any]) -> tuple[float, float, float]:
     "name",
     [
         "tests/paper/table2_two_wheels.pyr",
-        "examples/wall.pyr",
+        pytest.param("examples/wall.pyr", marks=pytest.mark.long),
         pytest.param("tests/paper/table3_four_wheels.pyr", marks=pytest.mark.long),
         pytest.param("tests/paper/table4_holonomic.pyr", marks=pytest.mark.long),
         pytest.param("tests/paper/table6_sensors.pyr", marks=pytest.mark.long),
