@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import subprocess
-import time
 from collections.abc import Callable
 from typing import Any
 
@@ -127,12 +126,12 @@ class FakeRobot:
         self._fresh += 1
 
     def _await_command(self, script: subprocess.Popen[str]) -> bool:
-        """Whether a command has come; otherwise the script may not have heard what it needs yet, or has ended."""
-        until = time.monotonic() + REPEAT_PERIOD
-        while self._fresh == 0:
-            if script.poll() is not None or time.monotonic() > until:
-                return False
+        """Whether a command has come; otherwise the script may not have heard what it needs yet, and is told again, or has
+        ended."""
+        if self._fresh == 0:
             self.executor.spin_once(timeout_sec=REPEAT_PERIOD)
+        if self._fresh == 0 or script.poll() is not None:
+            return False
         self._fresh -= 1
         return True
 

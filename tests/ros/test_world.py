@@ -9,19 +9,19 @@ import pathlib
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
 import rclpy
-from conftest import END_LIMIT, ROOT, Start, said
+from conftest import ROOT, Start, said
 from nav_msgs.msg import Odometry
 from pydslrep_runtime.facts import MOTOR_ACCELERATION, STEP
 from pydslrep_runtime.ros2_world import Watchdog
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import qos_profile_sensor_data
+from until import until
 
 PATIENCE = 600  # s for a run on a machine that does much else
 STANDS = 0.6  # s after its last command within which a robot stands
@@ -149,11 +149,14 @@ class Witness:
         twist = message.twist.twist
         self.speed = math.hypot(twist.linear.x, twist.linear.y) + abs(twist.angular.z)
 
-    def wait(self, until: Callable[[], bool]) -> None:
-        limit = time.monotonic() + END_LIMIT
-        while not until():
-            assert time.monotonic() < limit, self.speed
+    def wait(self, what: str, is_so: Callable[[], bool]) -> None:
+        """Listens until something is so."""
+
+        def look() -> bool:
             self.executor.spin_once(timeout_sec=0.1)
+            return is_so()
+
+        until(what, look, lambda: f"{self.speed} m/s")
 
     def close(self) -> None:
         self.node.destroy_node()
@@ -172,10 +175,10 @@ def test_the_robot_stands_when_its_script_is_killed(
 ) -> None:
     start_world(start, command, short)
     process = script("await rover.move(5)")
-    witness.wait(lambda: witness.speed > 0.05)
+    witness.wait("the robot drives", lambda: witness.speed > 0.05)
     process.send_signal(signal.SIGKILL)
     process.wait()
-    witness.wait(lambda: witness.speed < 1e-3)
+    witness.wait("the robot stands", lambda: witness.speed < 1e-3)
 
 
 def test_commands_hold_for_a_short_time() -> None:
