@@ -8,11 +8,11 @@ from .errors import SetupError
 from .ros2_topics import Topic
 
 try:
-    import rclpy
-    from rclpy.duration import Duration
-    from rclpy.executors import SingleThreadedExecutor
-    from rclpy.node import Node
-    from rclpy.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
+    import rclpy  # type: ignore[import-not-found,import-untyped,unused-ignore]
+    from rclpy.duration import Duration  # type: ignore[import-not-found,import-untyped,unused-ignore]
+    from rclpy.executors import SingleThreadedExecutor  # type: ignore[import-not-found,import-untyped,unused-ignore]
+    from rclpy.node import Node  # type: ignore[import-not-found,import-untyped,unused-ignore]
+    from rclpy.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy  # type: ignore[import-not-found,import-untyped,unused-ignore]
 except ImportError as error:
     raise SetupError(
         f"this Python cannot import rclpy ({error}). Source your ROS 2 first (`source /opt/ros/jazzy/setup.bash`), or "
