@@ -7,7 +7,7 @@ import pytest
 from pydslrep_runtime import Robot, drives, robots
 from pydslrep_runtime.facts import ROBOT_TYPES, RobotType
 
-NOT_WHEELS = {"name", "port", "sensors", "bumpers", "objects"}
+NOT_WHEELS = {"name", "port", "sensors", "bumpers", "objects", "ros2", "mounts"}
 
 
 @pytest.mark.parametrize("kind", ROBOT_TYPES.values(), ids=ROBOT_TYPES)
