@@ -25,8 +25,11 @@ use crate::programs::Start;
 /// The default number of edits.
 const EDITS: u32 = 4_000;
 
-/// The approximate number of edits per set of files.
+/// The greatest number of edits per set of files.
 const IN_A_ROW: usize = 40;
+
+/// The least average number of edits per set of files, so that enough sets are made.
+const AVERAGE: u32 = 32;
 
 /// The number of edits between progress messages of a long run.
 const TELL_EVERY: u64 = 100_000;
@@ -34,14 +37,22 @@ const TELL_EVERY: u64 = 100_000;
 #[test]
 fn an_edited_database_answers_as_a_fresh_one() {
     let wanted = std::env::var("PYDSLREP_EDITS").ok();
-    let edits = wanted.as_deref().map_or(EDITS, |number| number.parse().expect("PYDSLREP_EDITS is a number"));
+    let edits: u32 =
+        wanted.as_deref().map_or(EDITS, |number| number.parse().expect("PYDSLREP_EDITS is a number"));
     let every = std::env::var("PYDSLREP_COMPARE_EVERY").ok();
     let every = every.map_or(1, |number| number.parse().expect("PYDSLREP_COMPARE_EVERY is a number"));
-    let cases = edits.div_ceil(u32::try_from(IN_A_ROW).unwrap());
-    let config = Config { cases, max_shrink_iters: 20_000, failure_persistence: None, ..Config::default() };
+    let config = Config {
+        cases: edits.div_ceil(AVERAGE),
+        max_shrink_iters: 20_000,
+        failure_persistence: None,
+        ..Config::default()
+    };
     let done = Cell::new(0_u64);
     let silence = Silence::new();
     let outcome = TestRunner::new(config).run(&editing::strategy(IN_A_ROW), |(start, steps)| {
+        if done.get() >= u64::from(edits) {
+            return Ok(());
+        }
         let mut editing = Editing::new(&start, every);
         for step in &steps {
             let edits = editing.take(step).map_err(|failure| TestCaseError::fail(failure.difference))?;
@@ -64,6 +75,7 @@ fn an_edited_database_answers_as_a_fresh_one() {
     if let Some(failure) = failure {
         panic!("{failure}");
     }
+    assert!(done.get() >= u64::from(edits), "only {} of {edits} edits were made: lower AVERAGE", done.get());
 }
 
 /// The first failure, shrunk.
