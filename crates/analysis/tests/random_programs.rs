@@ -5,7 +5,7 @@
 use std::collections::BTreeSet;
 
 use proptest::prelude::*;
-use pydslrep_analysis::{Absence, Database, FileId, Target};
+use pydslrep_analysis::{Absence, Database, Edition, FileId, Target};
 use pydslrep_naive::{Finding, Recipe, Source, Verdict};
 use pydslrep_syntax::{format, parse};
 
@@ -13,6 +13,14 @@ use pydslrep_syntax::{format, parse};
 fn diagnostics(text: &str) -> BTreeSet<Finding> {
     let mut database = Database::new();
     let file = database.open("random.pyr", text);
+    findings(&database, file)
+}
+
+/// What is said of a program where the edition is the article's.
+fn diagnostics_as_article(text: &str) -> BTreeSet<Finding> {
+    let mut database = Database::new();
+    let file = database.open("random.pyr", text);
+    database.set_edition(file, Edition::Article);
     findings(&database, file)
 }
 
@@ -65,7 +73,8 @@ fn check(text: &str) -> Result<(), TestCaseError> {
     prop_assert_eq!(meaning(&formatted), meant, "formatting changes the meaning:\n{}", &formatted);
     prop_assert_eq!(format(&formatted), formatted.clone(), "formatting again changes something");
 
-    compare(&diagnostics(text), verdict)
+    compare(&diagnostics(text), verdict)?;
+    compare(&diagnostics_as_article(text), pydslrep_naive::check_as_article(text))
 }
 
 /// What is said must be what the naive checker finds.

@@ -1,6 +1,6 @@
 //! `not-in-article`: what the article does not have, in a program of its edition.
 
-use pydslrep_syntax::ast::{Action, ActionKind, Entity, Turn, Until};
+use pydslrep_syntax::ast::{Action, ActionKind, Condition, Entity, Turn, Until};
 use pydslrep_syntax::{Span, Token};
 
 use super::context::Context;
@@ -92,10 +92,16 @@ fn in_turn(turn: &Turn) -> Vec<Span> {
     if turn.angle.is_some() || !found.is_empty() {
         found.push(*span);
     } else {
-        found.extend(condition.state.map(|(_, span)| span));
-        found.extend(condition.within.as_ref().map(|within| within.span));
+        found.extend(after_sensors(condition));
     }
     found
+}
+
+/// The words after a condition's list of sensors, as one clause.
+fn after_sensors(condition: &Condition) -> Option<Span> {
+    let state = condition.state.map(|(_, span)| span);
+    let within = condition.within.as_ref().map(|within| within.span);
+    Some(Span { start: state.or(within)?.start, end: within.or(state)?.end })
 }
 
 #[cfg(test)]
@@ -140,8 +146,7 @@ mod tests {
                 at 5
                 in reverse
                 until { s } clear
-                clear
-                within 1 meters
+                clear within 1 meters
                 at 4
             "#]],
         );

@@ -345,12 +345,11 @@ fn the_article_lacks_what_is_new() {
         with radius 1 meters
         at 5
         in reverse
-        within 2 meters
+        until { a } within 2 meters
         wait
         repeat
         if
         do
-        if
     "#]]
     .assert_eq(&(parts.join("\n") + "\n"));
     assert!(check(&text).findings.iter().all(|finding| finding.code != "not-in-article"));
