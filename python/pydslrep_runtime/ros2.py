@@ -67,6 +67,10 @@ class Heard:
         """Seconds since what it says was so; infinite if there is none."""
         return self._now() - self._born
 
+    def born(self) -> float:
+        """When what it says was so, by the script's clock in seconds."""
+        return self._born
+
     def reason(self) -> str:
         """Why there may be no newer one."""
         if self.overtaken:
@@ -93,7 +97,7 @@ class Ros2:
         """Seconds, from any beginning."""
         return self._clock if self.is_simulated else time.monotonic()
 
-    def connect(self, spec: RobotSpec) -> Backend:
+    def connect(self, spec: RobotSpec) -> "Ros2Robot":
         """Connects a robot; raises SetupError."""
         if self.is_simulated and self._clock == -math.inf:
             self.await_all(f"{CLOCK} is silent", self._missing_clock)
@@ -262,6 +266,15 @@ class Ros2Robot(Backend):
             return Pose(x, y, heading(pose.orientation))
         except SimulatorError as error:
             raise SimulatorError(f"{topic.name}: {error}") from None
+
+    def pose_time(self) -> float:
+        """When its pose was so, by the clock of the script in seconds."""
+        return self._heard[self._topics.pose.name].born()
+
+    @property
+    def turn_rate(self) -> float:
+        """How fast it is told to turn, in rad/s."""
+        return self._twist[2]
 
     def set_wheel_rates(self, rates: Sequence[float]) -> None:
         """Sets what the next commands are: the motion of a body whose wheels turn like that, within the speed limit."""

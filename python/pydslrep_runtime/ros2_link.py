@@ -12,12 +12,17 @@ try:
     from rclpy.duration import Duration  # type: ignore[import-not-found,import-untyped,unused-ignore]
     from rclpy.executors import SingleThreadedExecutor  # type: ignore[import-not-found,import-untyped,unused-ignore]
     from rclpy.node import Node  # type: ignore[import-not-found,import-untyped,unused-ignore]
-    from rclpy.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy  # type: ignore[import-not-found,import-untyped,unused-ignore]
+    from rclpy.qos import (  # type: ignore[import-not-found,import-untyped,unused-ignore]
+        DurabilityPolicy,
+        HistoryPolicy,
+        QoSProfile,
+        ReliabilityPolicy,
+    )
 except ImportError as error:
     raise SetupError(
         f"this Python cannot import rclpy ({error}). Source your ROS 2 first (`source /opt/ros/jazzy/setup.bash`), or "
         'install it with `pip install "ros-rclpy[fastrtps]" ros-geometry-msgs ros-nav-msgs ros-sensor-msgs`; '
-        "`pydslrep run --python PATH` chooses another Python"
+        "`--python PATH` of pydslrep chooses another Python"
     ) from error
 
 MAX_MESSAGES = 1000  # that are taken at once; who sends more never stops
@@ -99,12 +104,29 @@ class Link:
             and (self.publishers(name) or self.listeners(name))
         )
 
+    def published(self, message_type: str) -> list[str]:
+        """The topics on which somebody else publishes messages of a type."""
+        return self._of_type(message_type, self.publishers)
+
+    def listened(self, message_type: str) -> list[str]:
+        """The topics on which somebody else wants messages of a type."""
+        return self._of_type(message_type, self.listeners)
+
     def close(self, *publishers: Any) -> None:
         """Waits until everybody has what these published last, and leaves."""
         for publisher in publishers:
             publisher.wait_for_all_acked(Duration(seconds=LAST_WORDS))
         self._node.destroy_node()
         rclpy.try_shutdown()
+
+    def _of_type(
+        self, message_type: str, endpoints: Callable[[str], list[Any]]
+    ) -> list[str]:
+        return [
+            name
+            for name in self.topics()
+            if any(each.topic_type == message_type for each in endpoints(name))
+        ]
 
     def _others(self, endpoints: list[Any]) -> list[Any]:
         return [each for each in endpoints if each.node_name != self.name]
@@ -115,6 +137,7 @@ def profile(depth: int, *, reliable: bool) -> Any:
     return QoSProfile(
         history=HistoryPolicy.KEEP_LAST,
         depth=depth,
+        durability=DurabilityPolicy.VOLATILE,
         reliability=ReliabilityPolicy.RELIABLE
         if reliable
         else ReliabilityPolicy.BEST_EFFORT,
@@ -124,3 +147,17 @@ def profile(depth: int, *, reliable: bool) -> Any:
 def is_best_effort(endpoint: Any) -> bool:
     """Whether a publisher does not send again what was lost."""
     return bool(endpoint.qos_profile.reliability == ReliabilityPolicy.BEST_EFFORT)
+
+
+def misfit(publisher: Any, listener: Any) -> str:
+    """Why messages do not get from a publisher with one quality of service to a listener with another; empty if they do.
+
+    rclpy's own comparison takes the infinite deadlines of others for deadlines.
+    """
+    best_effort, reliable = ReliabilityPolicy.BEST_EFFORT, ReliabilityPolicy.RELIABLE
+    if (publisher.reliability, listener.reliability) == (best_effort, reliable):
+        return "messages are sent best effort, and the listener wants them reliable"
+    volatile, lasting = DurabilityPolicy.VOLATILE, DurabilityPolicy.TRANSIENT_LOCAL
+    if (publisher.durability, listener.durability) == (volatile, lasting):
+        return "messages are sent volatile, and the listener wants them transient local"
+    return ""

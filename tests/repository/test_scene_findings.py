@@ -1,20 +1,25 @@
-"""The table of findings in docs/coppeliasim.md is generated from the rules: `UPDATE_EXPECT=1` writes it."""
+"""The tables of findings in docs/coppeliasim.md and docs/ros2.md are generated from the rules: `UPDATE_EXPECT=1` writes them."""
 
 import os
 import re
 from pathlib import Path
 
-from pydslrep_runtime.scene.findings import RULES
+import pytest
+from pydslrep_runtime import ros2_findings
+from pydslrep_runtime.scene import findings
+from pydslrep_runtime.scene.findings import Rule
 
-PAGE = Path(__file__).resolve().parents[2] / "docs" / "coppeliasim.md"
-MARK = (
-    "<!-- The table is generated from python/pydslrep_runtime/scene/findings.py. -->\n"
-)
+DOCS = Path(__file__).resolve().parents[2] / "docs"
+MARK = "<!-- The table is generated from python/pydslrep_runtime/{}. -->\n"
+TABLES = {
+    "coppeliasim.md": ("scene/findings.py", findings.RULES),
+    "ros2.md": ("ros2_findings.py", ros2_findings.RULES),
+}
 
 
-def table() -> str:
+def table(rules: tuple[Rule, ...]) -> str:
     rows = ["| finding | | what to do |\n|---|---|---|\n"]
-    for rule in RULES:
+    for rule in rules:
         help_text = re.sub(r"\{(\w+)[^}]*\}", r"*\1*", rule.help)
         help_text = help_text[0].upper() + help_text[1:]
         rows.append(
@@ -23,18 +28,22 @@ def table() -> str:
     return "".join(rows)
 
 
-def test_the_table_is_up_to_date() -> None:
-    top, mark, rest = PAGE.read_text(encoding="utf-8").partition(MARK)
+@pytest.mark.parametrize("name", TABLES)
+def test_the_table_is_up_to_date(name: str) -> None:
+    source, rules = TABLES[name]
+    page = DOCS / name
+    top, mark, rest = page.read_text(encoding="utf-8").partition(MARK.format(source))
     assert mark
     _, _, bottom = rest.lstrip("\n").partition("\n\n")
-    page = f"{top}{mark}\n{table()}" + (f"\n{bottom}" if bottom else "")
+    text = f"{top}{mark}\n{table(rules)}" + (f"\n{bottom}" if bottom else "")
     if os.environ.get("UPDATE_EXPECT"):
-        PAGE.write_text(page, encoding="utf-8")
-    assert PAGE.read_text(encoding="utf-8") == page, "run it with UPDATE_EXPECT=1"
+        page.write_text(text, encoding="utf-8")
+    assert page.read_text(encoding="utf-8") == text, "run it with UPDATE_EXPECT=1"
 
 
-def test_rules_have_one_form() -> None:
-    for rule in RULES:
+@pytest.mark.parametrize("name", TABLES)
+def test_rules_have_one_form(name: str) -> None:
+    for rule in TABLES[name][1]:
         assert re.fullmatch(r"[a-z]+(-[a-z]+)*", rule.code)
         assert rule.title[0].isupper()
         for text in (rule.title, rule.message, rule.help):

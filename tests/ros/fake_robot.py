@@ -46,6 +46,8 @@ class FakeRobot:
         self.publishers: dict[str, Any] = {}
         self.says: dict[str, Callable[[], Any]] = {}
         self.is_lost = False  # whether there is no odometry any more
+        self.turning = 1.0  # how much it turns, as a share of what it is told
+        self.frame = ""  # of its body
 
     def close(self) -> None:
         self.node.destroy_node()
@@ -104,6 +106,7 @@ class FakeRobot:
         message = self.odometry_type()
         if isinstance(message, Odometry):
             message.header.stamp = self._stamp(self.time)
+            message.child_frame_id = self.frame
             position = message.pose.pose.position
             position.x, position.y = self.x, self.y
             orientation = message.pose.pose.orientation
@@ -137,6 +140,7 @@ class FakeRobot:
 
     def _integrate(self) -> None:
         ahead, left, turn = self.commands[-1]
+        turn *= self.turning
         middle = self.theta + turn * STEP / 2.0
         self.x += (ahead * math.cos(middle) - left * math.sin(middle)) * STEP
         self.y += (ahead * math.sin(middle) + left * math.cos(middle)) * STEP

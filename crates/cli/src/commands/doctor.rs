@@ -1,19 +1,22 @@
-//! `pydslrep doctor`: checks the scene of a running `CoppeliaSim` against a program.
+//! `pydslrep doctor`: checks the scene of a running `CoppeliaSim`, or robots in ROS 2, against a program.
+
+mod ros2;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 use annotate_snippets::{Group, Level};
 use clap::Args;
+use pydslrep_analysis::FileId;
 use pydslrep_analysis::environment::{Environment, Objects, SensorKind};
-use pydslrep_config::Config;
+use pydslrep_config::{Config, Target};
 use pydslrep_script::used_sensors;
 use serde::{Deserialize, Serialize, Serializer};
 
 use crate::failure::Failure;
 use crate::help::Help;
 use crate::inputs::{Inputs, program};
-use crate::options::Port;
+use crate::options::{Port, target_parser};
 use crate::report::output;
 use crate::run::interrupt;
 use crate::run::scene_tasks::{Interpreter, carry_out};
@@ -23,22 +26,41 @@ const HELP: Help = Help {
         ("pydslrep doctor patrol.pyr", "the CoppeliaSim on this machine"),
         ("pydslrep doctor patrol.pyr --host 192.168.0.7", "one on another machine"),
         ("pydslrep doctor patrol.pyr --port 23000", "on another port than the program says"),
+        (
+            "pydslrep doctor patrol.pyr --target ros2",
+            "the drivers of the robots in ROS 2: topics, types, rates",
+        ),
+        (
+            "pydslrep doctor patrol.pyr --target ros2 --drive",
+            "and turn each robot in place, to measure its track",
+        ),
+        ("pydslrep doctor --target ros2", "the topics that are there"),
     ],
     notes: &[
-        "It changes nothing, and may run beside a script that drives. Exit codes: 0 nothing is wrong, 1 \
-         findings, 2 it cannot connect.",
+        "It changes nothing, and may run beside a script that drives; only --drive moves robots. Exit codes: 0 nothing \
+         is wrong, 1 findings, 2 it cannot connect. With --target ros2, your own Python looks: one that can import rclpy.",
     ],
 };
 
-/// Check the scene of a running CoppeliaSim against a program: what is wrong with it, and what to do
+/// Check the scene of a running CoppeliaSim, or robots in ROS 2, against a program: what is wrong, and what to do
 #[derive(Debug, Args)]
 #[command(after_help = HELP.text())]
 pub(crate) struct Arguments {
-    /// A program, or `-` for standard input
-    program: PathBuf,
+    /// A program, or `-` for standard input; with --target ros2, all topics are listed without one
+    #[arg(required_unless_present = "target")]
+    program: Option<PathBuf>,
     /// The environment to check; required if there are several
     #[arg(long, value_name = "NAME")]
     environment: Option<String>,
+    /// What the robots are in [default: that of pydslrep.toml, else coppeliasim]
+    #[arg(long, value_name = "TARGET", value_parser = target_parser())]
+    target: Option<Target>,
+    /// With the target ros2: the scene that says what the robots are like [default: ENVIRONMENT.scene.toml next to the program, if it exists]
+    #[arg(long, value_name = "FILE")]
+    scene: Option<PathBuf>,
+    /// With the target ros2: turn each robot by about 120 degrees to the left, in place, to measure its track
+    #[arg(long)]
+    drive: bool,
     /// Where CoppeliaSim runs [default: where the program says, else this machine]
     #[arg(long, value_name = "ADDRESS")]
     host: Option<String>,
@@ -107,9 +129,37 @@ enum Severity {
 /// # Errors
 /// If the program cannot be read or Python cannot be started.
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    let (inputs, file) = Inputs::open_one(&arguments.program, &Config::default())?;
-    let id = program::environment(&inputs, file, arguments.environment.as_deref())?;
-    let Some(environment) = program::prepare(&inputs, file, &[id]).environments.pop() else {
+    let Some(program) = &arguments.program else {
+        return match arguments.target {
+            Some(Target::Ros2) => ros2::list(arguments),
+            _ => Err(Failure::new("there is no program to check against")
+                .help("name one: `pydslrep doctor PROGRAM`")),
+        };
+    };
+    let (mut inputs, file) = Inputs::open_one(program, &Config::of_target(arguments.target))?;
+    match inputs.settings(file).target {
+        Target::Ros2 => ros2::check_program(arguments, &mut inputs, file),
+        target => check_scene(arguments, &inputs, file, target),
+    }
+}
+
+/// Checks the scene of a simulator.
+fn check_scene(
+    arguments: &Arguments,
+    inputs: &Inputs,
+    file: FileId,
+    target: Target,
+) -> Result<ExitCode, Failure> {
+    if arguments.drive || arguments.scene.is_some() {
+        return Err(Failure::new("--drive and --scene are for the target ros2")
+            .help("`--target ros2` checks robots in ROS 2"));
+    }
+    if target == Target::VRep && arguments.target.is_some() {
+        return Err(Failure::new("the legacy remote API of V-REP cannot be asked about a scene")
+            .help("open the scene in CoppeliaSim, and leave --target out"));
+    }
+    let id = program::environment(inputs, file, arguments.environment.as_deref())?;
+    let Some(environment) = program::prepare(inputs, file, &[id]).environments.pop() else {
         return Ok(ExitCode::FAILURE);
     };
     let host = environment.host.map_or_else(|| "127.0.0.1".to_owned(), |host| host.to_string());
@@ -120,15 +170,23 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let Some(answer) = carry_out::<Answer>(interpreter, &Request { task: "doctor", robots })? else {
         return Ok(ExitCode::from(interrupt::EXIT_CODE));
     };
-    if arguments.json {
-        let json = serde_json::to_string_pretty(&answer.findings);
-        let json = json.map_err(|error| Failure::new(format!("cannot write JSON: {error}")))?;
-        output::print(&format!("{json}\n"))?;
-    } else {
-        output::print(&report(&answer.findings))?;
+    print(arguments, &answer.findings, "the scene fits the program")?;
+    Ok(exit_code(answer.reached, &answer.findings))
+}
+
+/// Prints findings for people or programs; `all_well` if there is none.
+fn print(arguments: &Arguments, findings: &[Finding], all_well: &str) -> Result<(), Failure> {
+    if !arguments.json {
+        return output::print(&report(findings, all_well));
     }
-    let is_wrong = answer.findings.iter().any(|finding| finding.severity != Severity::Hint);
-    Ok(ExitCode::from(if answer.reached { u8::from(is_wrong) } else { Failure::EXIT_CODE }))
+    let json = serde_json::to_string_pretty(findings);
+    let json = json.map_err(|error| Failure::new(format!("cannot write JSON: {error}")))?;
+    output::print(&format!("{json}\n"))
+}
+
+fn exit_code(reached: bool, findings: &[Finding]) -> ExitCode {
+    let is_wrong = findings.iter().any(|finding| finding.severity != Severity::Hint);
+    ExitCode::from(if reached { u8::from(is_wrong) } else { Failure::EXIT_CODE })
 }
 
 fn as_map<S: Serializer>(pairs: &[(&str, f64)], serializer: S) -> Result<S::Ok, S::Error> {
@@ -156,9 +214,9 @@ fn robots<'a>(environment: &'a Environment, host: &'a str, ports: &[u16]) -> Vec
     robots.collect()
 }
 
-fn report(findings: &[Finding]) -> String {
+fn report(findings: &[Finding], all_well: &str) -> String {
     if findings.is_empty() {
-        return "the scene fits the program\n".to_owned();
+        return format!("{all_well}\n");
     }
     let mut text = String::new();
     for Finding { code, severity, robot, message, help } in findings {

@@ -1,8 +1,8 @@
 //! An environment with its scene as JSON: what `python/pydslrep_runtime/scene/description.py` reads.
 
 use pydslrep_kinematics::Pose;
-use pydslrep_scene::{Obstacle, Robot, Scene, SensorKind, Shape, triangulate};
-use serde_json::{Value, json};
+use pydslrep_scene::{Obstacle, Robot, Ros2Value, Scene, SensorKind, Shape, triangulate};
+use serde_json::{Map, Value, json};
 
 /// The description of a scene; metres and radians. `reach` has the least and the greatest coordinates that robots may get
 /// to.
@@ -59,6 +59,20 @@ pub(crate) fn robot(robot: &Robot) -> Value {
         "wheels": wheels, "sensors": sensors,
         "object": paths(&robot.name).first(),
     })
+}
+
+/// A robot with what it is called in ROS 2: what `ros2_world.py` and `ros2_doctor.py` read.
+pub(crate) fn ros2_robot(robot: &Robot) -> Value {
+    let mut described = self::robot(robot);
+    let setting = |value: &Ros2Value| match value {
+        Ros2Value::Text(text) => json!(text),
+        Ros2Value::Number(number) => json!(number),
+        Ros2Value::Flag(flag) => json!(flag),
+    };
+    let settings: Map<String, Value> =
+        robot.ros2().iter().map(|(key, value)| (key.replace('-', "_"), setting(value))).collect();
+    described["ros2"] = Value::Object(settings);
+    described
 }
 
 fn obstacle(obstacle: &Obstacle) -> Value {

@@ -1,5 +1,5 @@
-//! Tasks on the scene of a running simulator, which `pydslrep_runtime.scene` carries out: a request as JSON in, its answer
-//! as JSON out.
+//! Tasks on the scene of a running simulator, which `pydslrep_runtime.scene` carries out, and on robots of ROS 2: a request
+//! as JSON in, its answer as JSON out.
 
 use std::io;
 use std::path::Path;
@@ -18,8 +18,11 @@ use crate::run::interrupt::{Interrupts, interrupt_process};
 use crate::run::python::{self, Packages, Watcher};
 use crate::run::reporter::Reporter;
 
-/// Starts the module: the argument is the folder of its package.
-const BOOT: &str = "import runpy, sys; sys.path.insert(0, sys.argv.pop(1)); runpy.run_module('pydslrep_runtime.scene', None, '__main__')";
+/// Starts a module: the arguments are the folder of its package, and its name.
+const BOOT: &str = "import runpy, sys; sys.path.insert(0, sys.argv.pop(1)); runpy.run_module(sys.argv.pop(1), None, '__main__')";
+
+/// What carries out tasks on the scene of a simulator.
+const SCENE_MODULE: &str = "pydslrep_runtime.scene";
 
 /// At most this much of an answer is read, bytes: more than the largest scene takes.
 const MAX_ANSWER: u64 = 64 << 20;
@@ -70,12 +73,37 @@ pub(crate) fn carry_out<T: DeserializeOwned>(
             python = python::prepare(interpreter.chosen, Packages::Client, watcher) => python?,
             () = interrupts.next() => return Ok(None),
         };
-        result(&python, &request, &mut interrupts).await
+        let mut command = Command::new(python);
+        command.arg("-I");
+        result(command, SCENE_MODULE, &request, &mut interrupts).await
+    })
+}
+
+/// Has a module carry out a task in the user's own Python, with what its environment adds to that; `None` if the user
+/// interrupts it.
+///
+/// # Errors
+/// If there is no suitable Python, or the task is refused.
+pub(crate) fn carry_out_in_own_python<T: DeserializeOwned>(
+    chosen: Option<&Path>,
+    module: &str,
+    request: &impl Serialize,
+) -> Result<Option<T>, Failure> {
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
+    let request = serde_json::to_vec(request).map_err(|error| unstarted(&error))?;
+    runtime.map_err(|error| unstarted(&error))?.block_on(async {
+        let mut interrupts = Interrupts::listen().map_err(|error| unstarted(&error))?;
+        let python = tokio::select! {
+            python = python::interpreter(chosen) => python?,
+            () = interrupts.next() => return Ok(None),
+        };
+        result(Command::new(python), module, &request, &mut interrupts).await
     })
 }
 
 async fn result<T: DeserializeOwned>(
-    python: &Path,
+    mut command: Command,
+    module: &str,
     request: &[u8],
     interrupts: &mut Interrupts,
 ) -> Result<Option<T>, Failure> {
@@ -83,8 +111,7 @@ async fn result<T: DeserializeOwned>(
     let runtime = python::cache().and_then(|cache| Ok(provide_runtime(&cache)?));
     // Without a cache, the package is written for this task only.
     let runtime = runtime.or_else(|_| provide_runtime(folder.path()))?;
-    let mut command = Command::new(python);
-    command.args(["-I", "-X", "utf8", "-c", BOOT]).arg(&runtime);
+    command.args(["-X", "utf8", "-c", BOOT]).arg(&runtime).arg(module);
     let output = exchange(&mut command, request, interrupts).await.map_err(|error| unstarted(&error))?;
     let Some(output) = output else { return Ok(None) };
     match serde_json::from_slice(&output.stdout) {
