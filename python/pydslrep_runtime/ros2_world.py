@@ -1,6 +1,7 @@
 """A world as a node of ROS 2: its robots take commands and publish where they are and what they detect.
 
-`pydslrep sim --ros2` starts it: it steps the embedded simulator by the remote API, as any script does.
+`pydslrep sim --ros2` starts it: it steps the embedded simulator by the remote API, as any script does, or MuJoCo, which is in its
+own process.
 """
 
 import argparse
@@ -12,11 +13,10 @@ import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import FrameType
-from typing import Any
+from typing import Any, Protocol
 
 from . import drives
 from .backend import Backend, RobotSpec
-from .coppeliasim import CoppeliaSim
 from .errors import SetupError, SimulatorError
 from .facts import ROBOT_TYPES, ROS2_BASE_FRAME, ROS2_ODOM_FRAME
 from .pose import Pose, wrap_angle
@@ -27,6 +27,39 @@ WATCHDOG = 0.3  # s of simulation time without a command, after which a robot st
 REPEAT_PERIOD = 0.25  # s of real time, after which a script that steps the world is told again how it is
 ULTRASOUND = 0  # sensor_msgs/Range.ULTRASOUND
 EXIT_CODE = 130  # after an interrupt
+
+
+class Simulation(Protocol):
+    """What steps the robots."""
+
+    time: float  # s
+    time_step: float  # s
+
+    def connect(self, spec: RobotSpec) -> Backend:
+        """Connects a robot; raises SetupError."""
+
+    def start(self) -> None:
+        """Time begins."""
+
+    def advance(self) -> None:
+        """Takes one step; raises SimulatorError."""
+
+    def close(self) -> None:
+        """Leaves it."""
+
+
+def simulation(mujoco: Path | None) -> Simulation:
+    """The world of a file of MuJoCo's, or else the embedded simulator; raises SetupError.
+
+    Only what is used is imported: a Python for one of them need not have the packages of the other.
+    """
+    if mujoco is not None:
+        from .mujoco_engine import MuJoCo
+
+        return MuJoCo(mujoco)
+    from .coppeliasim import CoppeliaSim
+
+    return CoppeliaSim("127.0.0.1", realtime=False)
 
 
 class Watchdog:
@@ -51,7 +84,7 @@ class RobotNode:
     """The driver of one robot."""
 
     def __init__(
-        self, described: Mapping[str, Any], world: CoppeliaSim, link: Link
+        self, described: Mapping[str, Any], world: Simulation, link: Link
     ) -> None:
         self.name: str = described["name"]
         settings = described["ros2"]
@@ -149,9 +182,15 @@ class RobotNode:
 class World:
     """A world, and its clock."""
 
-    def __init__(self, robots: Sequence[Mapping[str, Any]], *, speed: float) -> None:
+    def __init__(
+        self,
+        robots: Sequence[Mapping[str, Any]],
+        *,
+        speed: float,
+        mujoco: Path | None = None,
+    ) -> None:
         """Its robots as they are described, and seconds of simulation time per second; raises SetupError."""
-        self._world = CoppeliaSim("127.0.0.1", realtime=False)
+        self._world = simulation(mujoco)
         self._link = Link("pydslrep_world")
         self._robots = [RobotNode(each, self._world, self._link) for each in robots]
         clock = Topic(CLOCK, "clock")
@@ -218,12 +257,13 @@ def main() -> None:
     parser.add_argument("robots", type=Path, help="a JSON file that describes them")
     parser.add_argument("--speed", type=float, default=1.0)
     parser.add_argument("--lockstep", action="store_true")
+    parser.add_argument("--mujoco", type=Path, help="a world of MuJoCo's")
     options = parser.parse_args()
     robots = json.loads(options.robots.read_text(encoding="utf-8"))
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, interrupt)
     try:
-        world = World(robots, speed=options.speed)
+        world = World(robots, speed=options.speed, mujoco=options.mujoco)
         print("ready", flush=True)
         while True:
             world.step(lockstep=options.lockstep)

@@ -25,7 +25,9 @@ from until import until
 
 PATIENCE = 600  # s for a run on a machine that does much else
 STANDS = 0.6  # s after its last command within which a robot stands
-OFF = 0.005, 0.5  # m and degrees, as without ROS 2
+# m and degrees by engine, as without ROS 2
+OFF = {"embedded": (0.005, 0.5), "mujoco": (0.02, 1.5)}
+ENGINES = pytest.mark.parametrize("engine", OFF)
 
 SHORT = """wheel l with radius 4.5
 wheel r with radius 4.5
@@ -41,18 +43,19 @@ Drive = Callable[..., dict[str, Any]]
 
 @pytest.fixture
 def drive(command: str, start: Start, tmp_path: pathlib.Path) -> Drive:
-    """Drives a program in the embedded world as a node, in lockstep; returns the figures of the run."""
+    """Drives a program in a world as a node, in lockstep; returns the figures of the run."""
 
     def drive(
-        program: pathlib.Path, *options: str, python: str = sys.executable
+        program: pathlib.Path,
+        engine: str = "embedded",
+        python: str = sys.executable,
     ) -> Any:
-        start_world(start, command, program, "--lockstep", *options)
+        start_world(start, command, program, "--lockstep", "--engine", engine)
         figures = tmp_path / "figures.json"
         run = subprocess.run(
             [
                 *(command, "run", program, "--target", "ros2", "--sim-time"),
                 *("--python", python, "--figures", figures, "--no-progress"),
-                *options,
             ],
             capture_output=True,
             text=True,
@@ -86,12 +89,15 @@ def short(tmp_path: pathlib.Path) -> pathlib.Path:
     return program
 
 
-def test_a_program_drives_in_the_world(drive: Drive, short: pathlib.Path) -> None:
-    figures = drive(short)
+@ENGINES
+def test_a_program_drives_in_the_world(
+    drive: Drive, short: pathlib.Path, engine: str
+) -> None:
+    figures = drive(short, engine)
     (robot,) = figures["robots"]
     # It stops before the wall, whose near side is at -0.85 m; the sensor is 0.15 m ahead of the middle.
     x, y, _ = pose(robot)
-    assert x == pytest.approx(0.3, abs=OFF[0])
+    assert x == pytest.approx(0.3, abs=OFF[engine][0])
     assert -0.25 < y < -0.15
 
 
@@ -101,23 +107,35 @@ def pose(robot: dict[str, Any]) -> tuple[float, float, float]:
     return end["x"], end["y"], end["theta"]
 
 
+PROGRAMS = (
+    "tests/paper/table2_two_wheels.pyr",
+    "examples/wall.pyr",
+    "tests/paper/table3_four_wheels.pyr",
+    "tests/paper/table4_holonomic.pyr",
+    "tests/paper/table6_sensors.pyr",
+)
+
+
 @pytest.mark.parametrize(
-    "name",
+    ("name", "engine"),
     [
-        "tests/paper/table2_two_wheels.pyr",
-        pytest.param("examples/wall.pyr", marks=pytest.mark.long),
-        pytest.param("tests/paper/table3_four_wheels.pyr", marks=pytest.mark.long),
-        pytest.param("tests/paper/table4_holonomic.pyr", marks=pytest.mark.long),
-        pytest.param("tests/paper/table6_sensors.pyr", marks=pytest.mark.long),
+        pytest.param(
+            name, engine, marks=[] if name == PROGRAMS[0] else [pytest.mark.long]
+        )
+        for name in PROGRAMS
+        for engine in OFF
     ],
 )
-def test_the_programs_of_the_article_drive(drive: Drive, name: str) -> None:
-    figures = drive(ROOT / name)
+def test_the_programs_of_the_article_drive(
+    drive: Drive, name: str, engine: str
+) -> None:
+    figures = drive(ROOT / name, engine)
     assert figures["complete"], figures
+    distance, angle = OFF[engine]
     # Where sensors decide, nobody knows the end before.
     for off in (robot["off"] for robot in figures["robots"] if robot["off"]):
-        assert off["distance"] <= OFF[0], figures
-        assert math.degrees(off["angle"]) <= OFF[1], figures
+        assert off["distance"] <= distance, figures
+        assert math.degrees(off["angle"]) <= angle, figures
 
 
 @pytest.mark.long
@@ -128,7 +146,7 @@ def test_a_script_on_jazzy_drives_a_robot_on_kilted(
     drive: Drive, short: pathlib.Path
 ) -> None:
     (robot,) = drive(short, python=os.environ["ROS_PYTHON_JAZZY"])["robots"]
-    assert pose(robot)[0] == pytest.approx(0.3, abs=OFF[0])
+    assert pose(robot)[0] == pytest.approx(0.3, abs=OFF["embedded"][0])
 
 
 class Witness:
@@ -170,10 +188,16 @@ def witness(domain: int) -> Iterator[Witness]:
     witness.close()
 
 
+@ENGINES
 def test_the_robot_stands_when_its_script_is_killed(
-    command: str, start: Start, script: Start, short: pathlib.Path, witness: Witness
+    command: str,
+    start: Start,
+    script: Start,
+    short: pathlib.Path,
+    witness: Witness,
+    engine: str,
 ) -> None:
-    start_world(start, command, short)
+    start_world(start, command, short, "--engine", engine)
     process = script("await rover.move(5)")
     witness.wait("the robot drives", lambda: witness.speed > 0.05)
     process.send_signal(signal.SIGKILL)
@@ -190,6 +214,21 @@ def test_commands_hold_for_a_short_time() -> None:
     assert watchdog.twist(1.0 + 4 * STEP) == (0.09, 0.0, 0.5)
     watchdog.take((math.nan, 0.0, 0.0), 2.0)
     assert watchdog.twist(2.0) == (0.0, 0.0, 0.0)
+
+
+def test_what_mujoco_cannot_do_is_told(command: str, short: pathlib.Path) -> None:
+    for options, expected in (
+        (("--engine", "mujoco"), "--engine mujoco has no ports for scripts"),
+        (
+            ("--engine", "mujoco", "--ros2", "--trace", "driven.jsonl"),
+            "--trace is of the embedded simulator, not of MuJoCo",
+        ),
+    ):
+        run = subprocess.run(
+            [command, "sim", short, *options], capture_output=True, text=True
+        )
+        assert run.returncode == 2, run.stdout
+        assert expected in run.stderr
 
 
 def test_a_python_without_ros_is_told(command: str, short: pathlib.Path) -> None:

@@ -15,13 +15,6 @@ pub(crate) fn target_parser() -> impl TypedValueParser<Value = Target> {
         .try_map(|word| Target::from_word(&word).ok_or("no target"))
 }
 
-/// Parses an engine by its name.
-pub(crate) fn engine_parser() -> impl TypedValueParser<Value = Engine> {
-    let word = |engine: Engine| PossibleValue::new(engine.word()).help(engine.summary());
-    PossibleValuesParser::new(Engine::ALL.map(word))
-        .try_map(|word| Engine::from_word(&word).ok_or("no engine"))
-}
-
 /// What moves the robots of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum RunEngine {

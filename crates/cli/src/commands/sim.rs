@@ -19,10 +19,10 @@ use crate::failure::Failure;
 use crate::help::Help;
 use crate::inputs::Inputs;
 use crate::inputs::program;
-use crate::options::{above_zero, engine_parser};
+use crate::options::{RunEngine, above_zero, run_engine_parser};
 use crate::report::output;
 use crate::run::interrupt::{self, Interrupts};
-use crate::run::ros2_world::{self, Node};
+use crate::run::ros2_world::{self, Node, World};
 
 const HELP: Help = Help {
     examples: &[
@@ -30,6 +30,7 @@ const HELP: Help = Help {
         ("python3 yard.py", "in another terminal: the script of the program"),
         ("pydslrep sim patrol.pyr --trace driven.jsonl", "also write the poses of the robots"),
         ("pydslrep sim patrol.pyr --ros2", "as a node of ROS 2: for `pydslrep run patrol.pyr --target ros2`"),
+        ("pydslrep sim patrol.pyr --ros2 --engine mujoco", "the same with physics: wheels roll by friction"),
         ("pydslrep sim --empty", "as CoppeliaSim starts: for `pydslrep scene push`"),
     ],
     notes: &[
@@ -37,7 +38,7 @@ const HELP: Help = Help {
          remote API it uses. Scripts step the simulation; while none does, it runs by itself. The wheels of \
          a script that disconnects stop.",
         "With --ros2 it is a node of ROS 2 instead: it takes cmd_vel and publishes odom, range and /clock. Its Python \
-         needs rclpy and the CoppeliaSim client library (coppeliasim-zmqremoteapi-client).",
+         needs rclpy, and the CoppeliaSim client library (coppeliasim-zmqremoteapi-client) or, with --engine mujoco, MuJoCo.",
     ],
 };
 
@@ -66,9 +67,9 @@ pub(crate) struct Arguments {
     /// The seed of the scene's noise and the engine's: the same seed gives the same run
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
-    /// The engine to imitate: what a physics engine does to robots, and its server to scripts
-    #[arg(long, value_name = "ENGINE", default_value = "ideal", value_parser = engine_parser())]
-    engine: Engine,
+    /// What moves the robots: the embedded simulator, as it is or imitating an engine, or with --ros2 also MuJoCo
+    #[arg(long, value_name = "ENGINE", default_value = "embedded", value_parser = run_engine_parser())]
+    engine: RunEngine,
     /// The address to listen on; the default accepts connections from this machine only
     #[arg(long, value_name = "ADDRESS", default_value_t = Ipv4Addr::LOCALHOST.into())]
     listen: IpAddr,
@@ -94,10 +95,26 @@ pub(crate) struct Arguments {
 /// # Errors
 /// If anything outside of the program fails.
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+    if arguments.engine == RunEngine::MuJoCo {
+        check_mujoco(arguments)?;
+    }
     match &arguments.program {
         Some(program) => simulate(arguments, program),
         None => simulate_empty_floor(arguments),
     }
+}
+
+/// Refuses what `MuJoCo` cannot do: it has no ports, and is in the process of the node.
+fn check_mujoco(arguments: &Arguments) -> Result<(), Failure> {
+    if !arguments.ros2 {
+        return Err(Failure::new("--engine mujoco has no ports for scripts: it needs --ros2")
+            .help("`pydslrep run --engine mujoco` drives in it without `pydslrep sim`"));
+    }
+    if arguments.trace.is_some() {
+        return Err(Failure::new("--trace is of the embedded simulator, not of MuJoCo")
+            .help("`pydslrep run --trace FILE` writes what the script sees"));
+    }
+    Ok(())
 }
 
 /// Serves a floor that clients build something on.
@@ -141,6 +158,9 @@ fn simulate(arguments: &Arguments, program: &Path) -> Result<ExitCode, Failure> 
             speed: arguments.speed,
             lockstep: arguments.lockstep,
         };
+        if arguments.engine == RunEngine::MuJoCo {
+            return run_node(&choice, &scene, &ros2_steps(arguments, program));
+        }
         let ports = vec![0; environment.robots.len()];
         return serve(arguments, scene, ports, trace, Some(choice), |_| ros2_steps(arguments, program));
     }
@@ -172,7 +192,10 @@ fn serve(
         ports,
         speed: arguments.speed,
         trace: trace.is_some(),
-        engine: arguments.engine,
+        engine: match arguments.engine {
+            RunEngine::Embedded(engine) => engine,
+            RunEngine::MuJoCo => Engine::default(),
+        },
         ..Options::default()
     };
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
@@ -181,7 +204,7 @@ fn serve(
         let simulator = Simulator::start(scene, &options).map_err(|error| Failure::new(error.to_string()))?;
         let mut node = match node.zip(token) {
             Some((choice, token)) => tokio::select! {
-                node = Node::start(&choice, &robots, simulator.ports(), &token) => Some(node?),
+                node = Node::start(&choice, &robots, World::Embedded { ports: simulator.ports(), token: &token }) => Some(node?),
                 () = interrupts.next() => return Ok(()),
             },
             None => None,
@@ -205,6 +228,26 @@ fn serve(
         let Some(mut trace) = trace else { return Ok(()) };
         trace.add(&lines(&rest))?;
         Ok::<(), Failure>(trace.finish()?)
+    })?;
+    Ok(ExitCode::from(interrupt::EXIT_CODE))
+}
+
+/// Runs a node with `MuJoCo` in it until an interrupt.
+fn run_node(choice: &ros2_world::Choice<'_>, scene: &Scene, greeting: &str) -> Result<ExitCode, Failure> {
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
+    runtime.map_err(|error| unstarted(&error))?.block_on(async {
+        let mut interrupts = Interrupts::listen().map_err(|error| unstarted(&error))?;
+        let mut node = tokio::select! {
+            node = Node::start(choice, &scene.robots, World::MuJoCo(scene)) => node?,
+            () = interrupts.next() => return Ok(()),
+        };
+        output::print(greeting)?;
+        tokio::select! {
+            () = interrupts.next() => {}
+            failure = node.ended() => return Err(failure),
+        }
+        node.stop().await;
+        Ok::<(), Failure>(())
     })?;
     Ok(ExitCode::from(interrupt::EXIT_CODE))
 }

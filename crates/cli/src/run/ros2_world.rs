@@ -1,4 +1,4 @@
-//! The embedded simulator as a node of ROS 2: a Python process (`pydslrep_runtime.ros2_world`) that steps it.
+//! A world as a node of ROS 2: a Python process (`pydslrep_runtime.ros2_world`) that steps the embedded simulator or `MuJoCo`.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -6,14 +6,15 @@ use std::process::Stdio;
 use std::time::Duration;
 
 use pydslrep_output::{TemporaryFolder, provide_runtime};
-use pydslrep_scene::{Robot, Ros2Value};
-use serde_json::{Map, Value, json};
+use pydslrep_scene::{Robot, Scene};
+use serde_json::{Value, json};
 use tokio::io::{AsyncBufReadExt, AsyncReadExt, BufReader};
 use tokio::process::{Child, Command};
 use tokio::time::timeout;
 
 use crate::failure::Failure;
 use crate::run::interrupt::interrupt_process;
+use crate::run::mujoco;
 use crate::run::python;
 use crate::run::scene_description;
 use crate::run::script::{BOOT, TOKEN};
@@ -38,6 +39,20 @@ pub(crate) struct Choice<'a> {
     pub(crate) lockstep: bool,
 }
 
+/// What moves the robots of a node.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum World<'a> {
+    /// The embedded simulator, with a port for each robot, and what it knows the node by.
+    Embedded {
+        /// The ports, in the order of the robots.
+        ports: &'a [u16],
+        /// The token of the simulator.
+        token: &'a str,
+    },
+    /// `MuJoCo`, in the process of the node.
+    MuJoCo(&'a Scene),
+}
+
 /// A node that runs.
 pub(crate) struct Node {
     child: Child,
@@ -45,29 +60,40 @@ pub(crate) struct Node {
 }
 
 impl Node {
-    /// Starts the node for robots at these ports of a simulator, and waits until it is ready.
+    /// Starts the node for robots of a world, and waits until it is ready.
     ///
     /// # Errors
     /// If its Python cannot be started, or cannot import what it needs.
     pub(crate) async fn start(
         choice: &Choice<'_>,
         robots: &[Robot],
-        ports: &[u16],
-        token: &str,
+        world: World<'_>,
     ) -> Result<Self, Failure> {
         let python = python::interpreter(choice.python).await?;
         let folder = TemporaryFolder::new("run-").map_err(|error| unstarted(&error))?;
         let runtime = python::cache().and_then(|cache| Ok(provide_runtime(&cache)?));
         let runtime = runtime.or_else(|_| provide_runtime(folder.path()))?;
+        let ports = match world {
+            World::Embedded { ports, .. } => ports,
+            World::MuJoCo(_) => &[],
+        };
+        let ports = ports.iter().copied().chain(std::iter::repeat(0));
         let described: Vec<Value> =
-            robots.iter().zip(ports).map(|(robot, port)| described(robot, *port)).collect();
+            robots.iter().zip(ports).map(|(robot, port)| with_port(robot, port)).collect();
         let script = write(folder.path().join("world.py"), SCRIPT)?;
         let robots = write(folder.path().join("robots.json"), &Value::from(described).to_string())?;
         let mut command = Command::new(&python);
         command.args(["-X", "utf8", "-c", BOOT]).arg(&runtime).arg("").arg(script).arg(robots);
         command.arg("--speed").arg(choice.speed.to_string());
         command.args(choice.lockstep.then_some("--lockstep"));
-        command.env(TOKEN, token);
+        match world {
+            World::Embedded { token, .. } => {
+                command.env(TOKEN, token);
+            }
+            World::MuJoCo(scene) => {
+                command.args(mujoco::World::write(scene, folder.path(), None, false)?.arguments());
+            }
+        }
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).kill_on_drop(true);
         // Ctrl-C reaches it once: from this process.
         #[cfg(unix)]
@@ -112,18 +138,9 @@ fn write(path: PathBuf, text: &str) -> Result<PathBuf, Failure> {
     Ok(path)
 }
 
-/// A robot, as `ros2_world.py` reads it.
-fn described(robot: &Robot, port: u16) -> Value {
-    let mut described = scene_description::robot(robot);
-    let setting = |value: &Ros2Value| match value {
-        Ros2Value::Text(text) => json!(text),
-        Ros2Value::Number(number) => json!(number),
-        Ros2Value::Flag(flag) => json!(flag),
-    };
-    let settings: Map<String, Value> =
-        robot.ros2().iter().map(|(key, value)| (key.replace('-', "_"), setting(value))).collect();
+fn with_port(robot: &Robot, port: u16) -> Value {
+    let mut described = scene_description::ros2_robot(robot);
     described["port"] = json!(port);
-    described["ros2"] = Value::Object(settings);
     described
 }
 
