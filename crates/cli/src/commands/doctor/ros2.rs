@@ -92,7 +92,7 @@ fn check_options(arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::new(
             "--host and --port are for CoppeliaSim, and robots of ROS 2 have no address",
         )
-        .help("ROS_DOMAIN_ID chooses among robots in one network"));
+        .help("`--target coppeliasim` checks a scene; ROS_DOMAIN_ID chooses among robots in one network"));
     }
     Ok(())
 }

@@ -154,7 +154,9 @@ pub(crate) async fn check(
 ) -> Result<Option<LSPAny>> {
     let title = format!("Checking the scene of {}", which.environment);
     let token = params.work_done_progress_params.work_done_token;
-    let child = Child { task: &["doctor"], options: &[], has_program: true };
+    // Whatever the scripts of the folder are for.
+    let options = &["--target", "coppeliasim"];
+    let child = Child { task: &["doctor"], options, has_program: true };
     let (place, ended) = child.run(&server, token, &title, &which).await?;
     let Ok(findings) = serde_json::from_str::<Vec<Finding>>(&ended.printed) else {
         return Err(unanswered::<Value>(None, &ended));
