@@ -67,7 +67,7 @@ def test_a_robot_that_fits_is_told_and_turns(doctor: Doctor, rover: FakeRobot) -
         "/rover/cmd_vel      geometry_msgs/Twist",
         "/rover/odom         nav_msgs/Odometry",
         "/rover/range/front  sensor_msgs/Range",
-        "told to turn by 34.4 deg/s, it turned by 34.4 deg/s",
+        "told to turn by 34.4 deg/s, it turned by 34.4 deg/s, as if its wheels were 0.300 m apart",
         "1 hint",
     ):
         assert line in output
