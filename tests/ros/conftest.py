@@ -15,6 +15,9 @@ import pytest
 
 # The middleware reads it when the first context begins.
 os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
+# The loader of the wheels sets them for this Python: one of another release would find the wrong libraries.
+for name in ("_ROS_WHEELS_BOOTSTRAP_COMPLETE", "LD_LIBRARY_PATH"):
+    os.environ.pop(name, None)
 
 ROOT = pathlib.Path(__file__).parents[2]
 DEBUG = pathlib.Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")) / "debug"

@@ -9,12 +9,12 @@ import pathlib
 import signal
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import pytest
 import rclpy
-from conftest import ROOT, Start, said
+from conftest import ROOT, Start
 from nav_msgs.msg import Odometry
 from pydslrep_runtime.facts import MOTOR_ACCELERATION, STEP
 from pydslrep_runtime.ros2_world import Watchdog
@@ -38,6 +38,14 @@ environment yard has { rover } robots with { m } moves
 """
 SCENE = "[[wall]]\nfrom = [-1, -0.9]\nto = [2, -0.9]\n"
 
+ROOM = """[world]
+size = [3, 3]
+corner = [0, 0]
+
+[robots.explorer]
+start = [1.5, 1.5]
+"""
+
 Drive = Callable[..., dict[str, Any]]
 
 
@@ -49,6 +57,7 @@ def drive(command: str, start: Start, tmp_path: pathlib.Path) -> Drive:
         program: pathlib.Path,
         engine: str = "embedded",
         python: str = sys.executable,
+        options: Sequence[object] = (),
     ) -> Any:
         start_world(start, command, program, "--lockstep", "--engine", engine)
         figures = tmp_path / "figures.json"
@@ -56,6 +65,7 @@ def drive(command: str, start: Start, tmp_path: pathlib.Path) -> Drive:
             [
                 *(command, "run", program, "--target", "ros2", "--sim-time"),
                 *("--python", python, "--figures", figures, "--no-progress"),
+                *options,
             ],
             capture_output=True,
             text=True,
@@ -75,9 +85,13 @@ def start_world(
         command, "sim", program, "--ros2", "--python", sys.executable, *options
     )
     assert world.stdout is not None
-    line = world.stdout.readline()
-    assert line.startswith("Ready"), line + said(world)
-    return world
+    before = []
+    for line in world.stdout:
+        if line.startswith("Ready"):
+            return world
+        # A program may have warnings.
+        before.append(line)
+    pytest.fail(f"the world has ended: {''.join(before)}")
 
 
 @pytest.fixture
@@ -136,6 +150,26 @@ def test_the_programs_of_the_article_drive(
     for off in (robot["off"] for robot in figures["robots"] if robot["off"]):
         assert off["distance"] <= distance, figures
         assert math.degrees(off["angle"]) <= angle, figures
+
+
+@pytest.mark.long
+@ENGINES
+def test_a_robot_explores_by_five_ranges(
+    drive: Drive, tmp_path: pathlib.Path, engine: str
+) -> None:
+    """A room of 3 m by 3 m, which the map covers, and whose walls the robot does not touch."""
+    program = tmp_path / "rooms.pyr"
+    rooms = (ROOT / "examples/rooms.pyr").read_text(encoding="utf-8")
+    program.write_text(rooms, encoding="utf-8")
+    (tmp_path / "rooms.scene.toml").write_text(ROOM, encoding="utf-8")
+    map_file = tmp_path / "map.json"
+    assert drive(program, engine, options=("--map", map_file))["complete"]
+    nodes = json.loads(map_file.read_text(encoding="utf-8"))["nodes"]
+    for axis in ("x", "y"):
+        places = [node[axis] for node in nodes]
+        assert min(places) < 0.6
+        assert max(places) > 2.4
+        assert all(0.2 < place < 2.8 for place in places)
 
 
 @pytest.mark.long
