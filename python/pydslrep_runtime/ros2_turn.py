@@ -10,6 +10,7 @@ from .ros2 import Ros2, Ros2Robot
 from .ros2_findings import finding
 from .ros2_topics import Topics
 from .scene.findings import Finding
+from .settings import REPLY_TIMEOUT
 
 SETTLING = 1.0  # s until it turns as fast as it can
 MEASURED = math.radians(90.0)  # that it is told to turn then
@@ -22,7 +23,7 @@ def measure_turn(spec: RobotSpec, *, is_simulated: bool) -> tuple[str, list[Find
 
     Raises SetupError and SimulatorError, after having stopped it.
     """
-    ros = Ros2(sim_time=is_simulated)
+    ros = Ros2(sim_time=is_simulated, patience=REPLY_TIMEOUT)
     try:
         robot = ros.connect(spec)
         ros.start()

@@ -297,6 +297,19 @@ def test_it_does_not_turn_blindly(doctor: Doctor, rover: FakeRobot) -> None:
     assert rover.commands[-2:] == [(0.0, 0.0, 0.0)] * 2
 
 
+def test_a_simulation_that_is_paused_is_told(
+    doctor: Doctor, rover: FakeRobot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PYDSLREP_TIME_LIMITS", "CONNECT_TIMEOUT=60,REPLY_TIMEOUT=1")
+    rover._integrate = lambda: None  # type: ignore[method-assign]
+    process = doctor("--drive")
+    rover.drive(process)
+    output = said(process)
+    assert process.returncode == 2, output
+    assert "/clock stands still, for 1 s" in output
+    assert rover.commands[-2:] == [(0.0, 0.0, 0.0)] * 2
+
+
 def test_without_a_program_all_topics_are_listed(
     command: str, start: Start, rover: FakeRobot
 ) -> None:
