@@ -119,6 +119,8 @@ pub struct Database {
     script_names: ScriptNames,
     /// Entities with problems.
     troubled: FxHashMap<FileId, FxHashSet<EntityId>>,
+    /// Entities with a problem whose fix renames them, also in the files that import theirs.
+    renamed: FxHashMap<FileId, FxHashSet<EntityId>>,
     /// Entities whose problems speak of all names of a kind ("did you mean …"), not only of those they use.
     name_dependents: FxHashSet<EntityId>,
     last_edit: EditCounts,

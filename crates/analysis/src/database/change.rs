@@ -13,7 +13,7 @@ use smol_str::SmolStr;
 
 use super::scenes::count_environment;
 use super::{Database, EditCounts, EntityData, EntityId, FileId};
-use crate::diagnostics;
+use crate::diagnostics::{self, Problem};
 use crate::file::{File, Window};
 use crate::names::Key;
 use crate::reads::{Kinds, Reads};
@@ -285,7 +285,7 @@ impl Database {
         if let Some(file) = self.file_of(id) {
             self.unregister(id, file);
             self.forget_reads(id);
-            self.set_troubled(id, file, false);
+            self.set_troubled(id, file, &[]);
             self.entities[id.0 as usize] = None;
             self.free.push(id.0);
         }
@@ -394,7 +394,7 @@ impl Database {
         let Some(file) = self.file_of(id) else { return };
         let (problems, reads) = diagnostics::in_entity(self, id);
         self.set_reads(id, reads);
-        self.set_troubled(id, file, !problems.is_empty());
+        self.set_troubled(id, file, &problems);
         self.touched.insert(file);
         self.last_edit.revalidated += 1;
         if let Some(data) = self.entities[id.0 as usize].as_mut() {
@@ -402,12 +402,18 @@ impl Database {
         }
     }
 
-    fn set_troubled(&mut self, id: EntityId, file: FileId, has_problems: bool) {
-        if has_problems {
-            self.troubled.entry(file).or_default().insert(id);
-        } else if let Some(troubled) = self.troubled.get_mut(&file) {
-            troubled.remove(&id);
-        }
+    fn set_troubled(&mut self, id: EntityId, file: FileId, problems: &[Problem]) {
+        list(&mut self.troubled, file, id, !problems.is_empty());
+        list(&mut self.renamed, file, id, problems.iter().any(Problem::renames));
+    }
+}
+
+/// Lists an entity under its file, or no longer.
+fn list(lists: &mut FxHashMap<FileId, FxHashSet<EntityId>>, file: FileId, id: EntityId, is_listed: bool) {
+    if is_listed {
+        lists.entry(file).or_default().insert(id);
+    } else if let Some(listed) = lists.get_mut(&file) {
+        listed.remove(&id);
     }
 }
 

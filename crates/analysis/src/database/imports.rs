@@ -171,12 +171,15 @@ impl Database {
     }
 
     /// The text of a file changed: so may the places in it that its own diagnostics name, and those of the files that
-    /// import it.
+    /// import it; and places at which what it imports would be renamed.
     pub(super) fn touch(&mut self, file: FileId) {
         self.touched.insert(file);
         let importers = self.importers.get(self.path(file));
         let importers: Vec<FileId> = importers.into_iter().flatten().copied().collect();
         self.touched.extend(importers);
+        let is_renamed = |imported: &FileId| self.renamed.get(imported).is_some_and(|ids| !ids.is_empty());
+        let renamed: Vec<FileId> = self.imported_files(file).filter(is_renamed).collect();
+        self.touched.extend(renamed);
     }
 
     /// Asks again a file and all that import it, near or far: a movement may have come with an import, and its robot
@@ -214,5 +217,31 @@ impl Database {
         for imported in changed.filter_map(|path| self.file(path)).collect::<Vec<_>>() {
             self.validate_file(imported);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use pydslrep_syntax::Span;
+
+    use crate::Database;
+
+    #[test]
+    fn files_are_touched_whose_fixes_edit_what_has_moved() {
+        let mut database = Database::new();
+        let parts = database.open("parts.pyr", "wheel moves with radius 4.5\n");
+        let main =
+            database.open("main.pyr", "import \"parts.pyr\"\nrobot r with port 1 has { ^moves } wheels\n");
+        let place = |database: &Database| {
+            let edits = database.diagnostics(parts).into_iter().flat_map(|problem| problem.fixes);
+            let edits = edits.flat_map(|fix| fix.edits).filter(|edit| edit.file == main);
+            edits.map(|edit| edit.span.start).next()
+        };
+        let before = place(&database);
+        assert!(before.is_some(), "the fix renames the wheel in both files");
+        database.take_touched();
+        database.edit(main, Span::at(0), "// A comment.\n");
+        assert_eq!(place(&database), before.map(|place| place + 14));
+        assert_eq!(database.take_touched(), [parts, main]);
     }
 }

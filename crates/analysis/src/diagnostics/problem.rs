@@ -135,6 +135,11 @@ impl Problem {
         self.add_fix(title.into(), false, edits.into())
     }
 
+    /// Whether a fix renames something wherever it is used.
+    pub(crate) fn renames(&self) -> bool {
+        self.fixes.iter().any(|fix| fix.renames.is_some())
+    }
+
     /// A fix by another name.
     pub(super) fn renaming(mut self, title: String, safe: bool, renaming: Renaming) -> Self {
         self.fixes.push(ProblemFix { title, safe, edits: Vec::new(), renames: Some(renaming) });
