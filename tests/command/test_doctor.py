@@ -195,10 +195,10 @@ ELSEWHERE = {
 
 @pytest.fixture
 def port(command: str, tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[int]:
-    """The port of a simulator in which the program's scene is built; tests may parametrise it by an engine."""
-    engine = getattr(request, "param", "ideal")
+    """The port of a simulator in which the program's scene is built; tests may parametrise it by the server to imitate."""
+    server = getattr(request, "param", "embedded")
     simulator = subprocess.Popen(
-        [command, "sim", "--empty", "--port", "0", "--engine", engine],
+        [command, "sim", "--empty", "--port", "0", "--server", server],
         stdout=subprocess.PIPE,
         text=True,
     )

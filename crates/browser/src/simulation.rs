@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use pydslrep_analysis::{Blocked, Diagnostic};
-use pydslrep_simulator::{Engine, Session};
+use pydslrep_simulator::Session;
 use pydslrep_workspace::{MemoryFiles, SceneError, Workspace};
 use ropey::Rope;
 use serde::Deserialize;
@@ -20,10 +20,8 @@ struct Input {
     program: String,
     /// The environment; may be omitted where there is only one.
     environment: Option<String>,
-    /// The seed of the scene's noise and the engine's, in place of the scene's.
+    /// The seed of the scene's noise, in place of the scene's.
     seed: Option<u64>,
-    /// The engine to imitate, by its name on the command line.
-    engine: Option<String>,
 }
 
 /// A simulation.
@@ -36,12 +34,8 @@ pub(crate) struct Simulation {
 impl Simulation {
     /// A stopped simulation; `input` is the JSON of an [`Input`].
     pub(crate) fn new(input: &str) -> Result<Self, String> {
-        let Input { files, program, environment, seed, engine } =
+        let Input { files, program, environment, seed } =
             serde_json::from_str(input).map_err(|error| error.to_string())?;
-        let engine = match engine.as_deref() {
-            Some(word) => Engine::from_word(word).ok_or_else(|| format!("there is no engine `{word}`"))?,
-            None => Engine::default(),
-        };
         let text = files.get(&program).ok_or_else(|| format!("{program} is not among the files"))?.clone();
         let memory = MemoryFiles::default();
         for (path, text) in files {
@@ -57,7 +51,7 @@ impl Simulation {
         let environment = database.environment(id).map_err(|blocked| reason(&blocked))?;
         let mut scene = workspace.scene(file, &environment).map_err(|error| problem(&error))?;
         scene.seed = seed.unwrap_or(scene.seed);
-        let mut session = Session::of_scene(scene, engine).map_err(|error| error.to_string())?;
+        let mut session = Session::of_scene(scene).map_err(|error| error.to_string())?;
         session.record();
         Ok(Self { environment: environment.name, session })
     }
@@ -137,7 +131,6 @@ mod tests {
     #[test]
     fn what_cannot_be_simulated_is_refused_with_the_reason() {
         let reason = |change: fn(&mut Value)| start(change).unwrap_err();
-        assert_eq!(reason(|input| input["engine"] = "ode".into()), "there is no engine `ode`");
         assert_eq!(reason(|input| input["program"] = "/b.pyr".into()), "/b.pyr is not among the files");
         let unknown = reason(|input| input["environment"] = "other".into());
         assert_eq!(unknown, "/w/a.pyr: there is no environment `other`");

@@ -1,10 +1,11 @@
 //! Options that several commands have.
 
+use clap::ValueEnum;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use pydslrep_analysis::environment::{Environment, Robot};
 use pydslrep_config::{Level, Severities, Target, find_rule};
 pub(crate) use pydslrep_server::edition_parser;
-use pydslrep_simulator::Engine;
+use pydslrep_simulator::Server;
 
 use crate::failure::Failure;
 
@@ -15,32 +16,22 @@ pub(crate) fn target_parser() -> impl TypedValueParser<Value = Target> {
         .try_map(|word| Target::from_word(&word).ok_or("no target"))
 }
 
-/// What moves the robots of a run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum RunEngine {
-    /// The embedded simulator.
-    Embedded(Engine),
-    /// `MuJoCo`, in the process of the script.
+/// What moves the robots.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Engine {
+    /// Robots move exactly as their wheels roll
+    Embedded,
+    /// Wheels roll by friction, bodies collide: the physics engine MuJoCo
+    #[value(name = "mujoco")]
     MuJoCo,
 }
 
-/// What moves the robots of a run, by name.
-pub(crate) fn run_engine_parser() -> impl TypedValueParser<Value = RunEngine> {
-    let embedded = Engine::ALL.map(|engine| match engine {
-        Engine::Ideal => PossibleValue::new(EMBEDDED).alias(engine.word()).help(engine.summary()),
-        _ => PossibleValue::new(engine.word()).help(engine.summary()),
-    });
-    let mujoco =
-        PossibleValue::new(MUJOCO).help("Wheels roll by friction, bodies collide: the physics engine MuJoCo");
-    PossibleValuesParser::new(embedded.into_iter().chain([mujoco])).try_map(|word| match word.as_str() {
-        MUJOCO => Ok(RunEngine::MuJoCo),
-        EMBEDDED => Ok(RunEngine::Embedded(Engine::Ideal)),
-        word => Engine::from_word(word).map(RunEngine::Embedded).ok_or("no engine"),
-    })
+/// Parses a server to imitate by its name.
+pub(crate) fn server_parser() -> impl TypedValueParser<Value = Server> {
+    let word = |server: Server| PossibleValue::new(server.word()).help(server.summary());
+    PossibleValuesParser::new(Server::ALL.map(word))
+        .try_map(|word| Server::from_word(&word).ok_or("no server"))
 }
-
-const EMBEDDED: &str = "embedded";
-const MUJOCO: &str = "mujoco";
 
 /// Parses a number above zero.
 pub(crate) fn above_zero(text: &str) -> Result<f64, String> {

@@ -6,19 +6,19 @@
 //!
 //! * [`World`]: robots with wheel joints, stepped in simulation time.
 //! * [`Session`]: the calls of both remote APIs on a world, for several clients that may step it in lockstep.
-//! * [`Engine`]: what real engines do to robots and clients, for scripts that are meant for them.
+//! * [`Server`]: how the servers of `CoppeliaSim` treat clients, for tests of scripts that are meant for them.
 //! * [`edge`] (feature `remote`): serves sessions on TCP ports; [`Simulator`] embeds it.
 
 #[cfg(feature = "remote")]
 pub mod edge;
-mod engine;
 mod remote;
+mod server;
 mod sightings;
 mod world;
 
 #[cfg(feature = "remote")]
 pub use edge::{Options, Simulator, StartError};
-pub use engine::Engine;
 pub use remote::{Answer, LegacyResponse, Malformed, Session};
+pub use server::Server;
 pub use sightings::Sightings;
 pub use world::{Strike, World, WorldError};

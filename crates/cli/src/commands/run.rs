@@ -12,13 +12,13 @@ use pydslrep_config::{Config, Edition, Target};
 use pydslrep_output::{Kind, TemporaryFolder, check_outputs, provide_runtime, write_output};
 use pydslrep_scene::Scene;
 use pydslrep_script::{file_name, generate};
-use pydslrep_simulator::{Engine, Options, Simulator};
+use pydslrep_simulator::{Options, Simulator};
 use pydslrep_trace::{FailureClass, FileKind, Map, RunEvent, RunFailure};
 
 use crate::failure::Failure;
 use crate::help::Help;
 use crate::inputs::{Inputs, paths, program};
-use crate::options::{RunEngine, above_zero, edition_parser, run_engine_parser, target_parser};
+use crate::options::{Engine, above_zero, edition_parser, target_parser};
 use crate::report::output;
 use crate::run::driven::Driven;
 use crate::run::interrupt::{self, Interrupts};
@@ -71,12 +71,12 @@ pub(crate) struct Arguments {
     /// The scene to run in [default: ENVIRONMENT.scene.toml next to the program, if it exists]
     #[arg(long, value_name = "FILE", conflicts_with = "host")]
     scene: Option<PathBuf>,
-    /// The seed of the scene's noise and the engine's: the same seed gives the same run
+    /// The seed of the scene's noise: the same seed gives the same run
     #[arg(long, value_name = "N", conflicts_with = "host")]
     seed: Option<u64>,
-    /// What moves the robots: the embedded simulator, as it is or imitating an engine, or MuJoCo
-    #[arg(long, value_name = "ENGINE", default_value = "embedded", value_parser = run_engine_parser(), conflicts_with = "host")]
-    engine: RunEngine,
+    /// What moves the robots
+    #[arg(long, value_name = "ENGINE", default_value = "embedded", conflicts_with = "host")]
+    engine: Engine,
     /// Watch the robots in MuJoCo's window, in real time unless --speed says otherwise
     #[arg(long, conflicts_with = "host")]
     view: bool,
@@ -136,14 +136,6 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    /// What the embedded simulator imitates, where it is used.
-    fn embedded_engine(&self) -> Engine {
-        match self.engine {
-            RunEngine::Embedded(engine) => engine,
-            RunEngine::MuJoCo => Engine::default(),
-        }
-    }
-
     /// The files to write.
     fn outputs<'a>(&'a self, map: Option<&'a Path>) -> Vec<(&'a Path, Kind)> {
         let others = [
@@ -181,13 +173,8 @@ fn perform(arguments: &Arguments, reporter: &mut Reporter) -> Result<ExitCode, F
         check_outputs(&[(path, Kind::Events)], &inputs.read_paths())?;
         *reporter = Reporter::open(events)?;
     }
-    let target = target(arguments, inputs.settings(file).target)?;
-    if arguments.restart && target == Target::VRep {
-        return Err(Failure::new(
-            "--restart is for CoppeliaSim: V-REP may listen only while its simulation runs",
-        ));
-    }
-    check_target(arguments, target)?;
+    let target = target(arguments, inputs.settings(file).target);
+    check_options(arguments, target)?;
     let id = program::environment(&inputs, file, arguments.environment.as_deref())?;
     if let Some(scene) = &arguments.scene {
         inputs.use_scene(file, id, scene)?;
@@ -223,41 +210,41 @@ fn perform(arguments: &Arguments, reporter: &mut Reporter) -> Result<ExitCode, F
     Ok(ExitCode::from(code))
 }
 
-/// The simulator that the script is for. It makes no difference to one that drives in `MuJoCo`.
-///
-/// # Errors
-/// If options contradict each other.
-fn target(arguments: &Arguments, chosen: Target) -> Result<Target, Failure> {
-    if arguments.engine != RunEngine::MuJoCo {
-        let refusal =
-            || Failure::new("--view is for --engine mujoco").help("draw an animated SVG with --replay");
-        return if arguments.view { Err(refusal()) } else { Ok(chosen) };
-    }
-    if arguments.target.is_some_and(|target| target != Target::CoppeliaSim) {
-        return Err(Failure::new(
-            "--target is for another simulator than --engine mujoco: leave one of them out",
-        ));
-    }
-    Ok(Target::CoppeliaSim)
+/// The simulator that the script is for, of that of the settings. It makes no difference to a script that drives in `MuJoCo`.
+fn target(arguments: &Arguments, chosen: Target) -> Target {
+    if arguments.engine == Engine::MuJoCo { Target::CoppeliaSim } else { chosen }
 }
 
-/// Refuses what a target knows nothing of: without a simulator, there is none to configure.
-fn check_target(arguments: &Arguments, target: Target) -> Result<(), Failure> {
-    let is_ros2 = target == Target::Ros2;
-    let unknown = [
-        ("--host", is_ros2 && arguments.host.is_some()),
-        ("--speed", is_ros2 && arguments.speed.is_some()),
-        ("--seed", is_ros2 && arguments.seed.is_some()),
-        ("--engine", is_ros2 && arguments.embedded_engine() != Engine::default()),
-        ("--odometry", is_ros2 && arguments.odometry),
-        ("--sim-time", !is_ros2 && arguments.sim_time),
+/// Refuses options that are for other runs than this one.
+fn check_options(arguments: &Arguments, target: Target) -> Result<(), Failure> {
+    let in_mujoco = arguments.engine == Engine::MuJoCo;
+    let in_ros2 = target == Target::Ros2;
+    let for_another = arguments.target.is_some_and(|target| target != Target::CoppeliaSim);
+    let for_simulators = |option| {
+        Failure::new(format!("{option} is for simulators, and the target ros2 starts none"))
+            .help("`pydslrep sim --ros2` starts a robot to try it with")
+    };
+    let refusals = [
+        (
+            arguments.view && !in_mujoco,
+            Failure::new("--view is for --engine mujoco").help("draw an animated SVG with --replay"),
+        ),
+        (
+            for_another && in_mujoco,
+            Failure::new("--target is for another simulator than --engine mujoco: leave one of them out"),
+        ),
+        (
+            arguments.restart && target == Target::VRep,
+            Failure::new("--restart is for CoppeliaSim: V-REP may listen only while its simulation runs"),
+        ),
+        (arguments.host.is_some() && in_ros2, for_simulators("--host")),
+        (arguments.speed.is_some() && in_ros2, for_simulators("--speed")),
+        (arguments.seed.is_some() && in_ros2, for_simulators("--seed")),
+        (arguments.odometry && in_ros2, for_simulators("--odometry")),
+        (arguments.sim_time && !in_ros2, Failure::new("--sim-time is for the target ros2")),
     ];
-    match unknown.into_iter().find(|(_, is_wrong)| *is_wrong) {
-        Some(("--sim-time", _)) => Err(Failure::new("--sim-time is for the target ros2")),
-        Some((option, _)) => {
-            Err(Failure::new(format!("{option} is for simulators, and the target ros2 starts none"))
-                .help("`pydslrep sim --ros2` starts a robot to try it with"))
-        }
+    match refusals.into_iter().find(|(is_wrong, _)| *is_wrong) {
+        Some((_, refusal)) => Err(refusal),
         None => Ok(()),
     }
 }
@@ -366,7 +353,7 @@ impl Run<'_> {
 
     /// Whether there are robots that drive in `MuJoCo`.
     fn is_in_mujoco(&self) -> bool {
-        self.arguments.engine == RunEngine::MuJoCo && self.needs_simulator()
+        self.arguments.engine == Engine::MuJoCo && self.needs_simulator()
     }
 
     fn world(&self, folder: &Path) -> Result<World, Failure> {
@@ -420,7 +407,6 @@ impl Run<'_> {
         let options = Options {
             ports: self.simulated_robots().map(|_| 0).collect(),
             token: Some(token.to_owned()),
-            engine: self.arguments.embedded_engine(),
             speed: self.arguments.speed.unwrap_or(1.0),
             paced: self.arguments.speed.is_some(),
             ..Options::default()

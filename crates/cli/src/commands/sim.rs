@@ -11,7 +11,7 @@ use pydslrep_config::Config;
 use pydslrep_output::{GrowingFile, Kind, check_outputs};
 use pydslrep_scene::{Scene, defaults};
 use pydslrep_script::file_name;
-use pydslrep_simulator::{Engine, Options, Simulator};
+use pydslrep_simulator::{Options, Server, Simulator};
 use pydslrep_trace::lines;
 use tokio::time::{MissedTickBehavior, interval};
 
@@ -19,7 +19,7 @@ use crate::failure::Failure;
 use crate::help::Help;
 use crate::inputs::Inputs;
 use crate::inputs::program;
-use crate::options::{RunEngine, above_zero, run_engine_parser};
+use crate::options::{Engine, above_zero, server_parser};
 use crate::report::output;
 use crate::run::interrupt::{self, Interrupts};
 use crate::run::ros2_world::{self, Node, World};
@@ -64,12 +64,15 @@ pub(crate) struct Arguments {
     /// The scene to simulate [default: ENVIRONMENT.scene.toml next to the program, if it exists]
     #[arg(long, value_name = "FILE")]
     scene: Option<PathBuf>,
-    /// The seed of the scene's noise and the engine's: the same seed gives the same run
+    /// The seed of the scene's noise: the same seed gives the same run
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
-    /// What moves the robots: the embedded simulator, as it is or imitating an engine, or with --ros2 also MuJoCo
-    #[arg(long, value_name = "ENGINE", default_value = "embedded", value_parser = run_engine_parser())]
-    engine: RunEngine,
+    /// What moves the robots; MuJoCo needs --ros2
+    #[arg(long, value_name = "ENGINE", default_value = "embedded")]
+    engine: Engine,
+    /// The server to imitate, to test scripts for it: how it treats clients while paused, and those that are lost
+    #[arg(long, value_name = "SERVER", default_value = "embedded", value_parser = server_parser(), conflicts_with = "ros2")]
+    server: Server,
     /// The address to listen on; the default accepts connections from this machine only
     #[arg(long, value_name = "ADDRESS", default_value_t = Ipv4Addr::LOCALHOST.into())]
     listen: IpAddr,
@@ -95,7 +98,7 @@ pub(crate) struct Arguments {
 /// # Errors
 /// If anything outside of the program fails.
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    if arguments.engine == RunEngine::MuJoCo {
+    if arguments.engine == Engine::MuJoCo {
         check_mujoco(arguments)?;
     }
     match &arguments.program {
@@ -158,7 +161,7 @@ fn simulate(arguments: &Arguments, program: &Path) -> Result<ExitCode, Failure> 
             speed: arguments.speed,
             lockstep: arguments.lockstep,
         };
-        if arguments.engine == RunEngine::MuJoCo {
+        if arguments.engine == Engine::MuJoCo {
             return run_node(&choice, &scene, &ros2_steps(arguments, program));
         }
         let ports = vec![0; environment.robots.len()];
@@ -192,10 +195,7 @@ fn serve(
         ports,
         speed: arguments.speed,
         trace: trace.is_some(),
-        engine: match arguments.engine {
-            RunEngine::Embedded(engine) => engine,
-            RunEngine::MuJoCo => Engine::default(),
-        },
+        server: arguments.server,
         ..Options::default()
     };
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();

@@ -16,7 +16,7 @@ use super::connection::listen;
 use super::shared_session::SharedSession;
 use pydslrep_trace::TraceRecord;
 
-use crate::{Engine, Session, Sightings, Strike, World, WorldError};
+use crate::{Server, Session, Sightings, Strike, World, WorldError};
 
 /// The period of the clock while it runs in real time, and while it does not.
 const CLOCK_PERIOD: Duration = Duration::from_millis(2);
@@ -47,8 +47,8 @@ pub struct Options {
     pub trace: bool,
     /// Serve only clients whose id begins with this. Clients of the legacy remote API have none.
     pub token: Option<String>,
-    /// The engine to imitate.
-    pub engine: Engine,
+    /// The server to imitate.
+    pub server: Server,
 }
 
 impl Default for Options {
@@ -63,7 +63,7 @@ impl Default for Options {
             paced: false,
             trace: true,
             token: None,
-            engine: Engine::Ideal,
+            server: Server::default(),
         }
     }
 }
@@ -130,7 +130,7 @@ impl Simulator {
         }
         let world = World::with_step(scene, options.step).map_err(StartError::World)?;
         let mut session = Session::new(world);
-        session.use_engine(options.engine);
+        session.imitate(options.server);
         if options.trace {
             session.record();
         }

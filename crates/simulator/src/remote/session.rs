@@ -15,7 +15,7 @@ use super::legacy::client::Client as LegacyClient;
 use super::message::{Request, encode, outcome_map};
 use super::objects::Objects;
 use super::recognition;
-use crate::{Engine, Sightings, World, WorldError};
+use crate::{Server, Sightings, World, WorldError};
 
 /// The step of the physics engine in a new scene, seconds.
 const PHYSICS_STEP: f64 = 0.005;
@@ -62,7 +62,7 @@ pub struct Session {
     token: Option<String>,
     /// The connections of clients that were refused.
     strangers: BTreeSet<u64>,
-    engine: Engine,
+    server: Server,
     /// The text of the main script, if there is one.
     main_script: Option<String>,
     /// The step of the physics engine, seconds; the simulation itself has one step.
@@ -130,27 +130,24 @@ impl Session {
             allowance: None,
             token: None,
             strangers: BTreeSet::new(),
-            engine: Engine::Ideal,
+            server: Server::default(),
             main_script: Some(building::DEFAULT_MAIN_SCRIPT.to_owned()),
             physics_step: PHYSICS_STEP,
             held: Vec::new(),
         }
     }
 
-    /// A session in a scene, with the usual step and an engine.
+    /// A session in a scene, with the usual step.
     ///
     /// # Errors
     /// If the scene cannot be simulated.
-    pub fn of_scene(scene: Scene, engine: Engine) -> Result<Self, WorldError> {
-        let mut session = Self::new(World::new(scene)?);
-        session.use_engine(engine);
-        Ok(session)
+    pub fn of_scene(scene: Scene) -> Result<Self, WorldError> {
+        Ok(Self::new(World::new(scene)?))
     }
 
-    /// From now on robots and clients are treated as by a real engine.
-    pub fn use_engine(&mut self, engine: Engine) {
-        self.engine = engine;
-        self.world.use_engine(engine);
+    /// From now on clients are treated as by this server.
+    pub fn imitate(&mut self, server: Server) {
+        self.server = server;
     }
 
     /// Starts recording all robots at the start of the simulation and after every step.
@@ -249,7 +246,7 @@ impl Session {
 
     /// Whether the server answers nothing at the moment.
     fn is_silent(&self) -> bool {
-        self.state == State::Paused && self.engine.is_silent_while_paused()
+        self.state == State::Paused && self.server.is_silent_while_paused()
     }
 
     /// After a pause, handles the requests that have waited for its end.
@@ -274,7 +271,7 @@ impl Session {
     /// Removes a connection and its clients: nobody waits for them any more, and the wheels that they drove stop. Real
     /// servers do not notice, and keep the clients until their timeout.
     pub fn disconnect(&mut self, connection: u64) -> Vec<Answer> {
-        if self.engine.keeps_lost_clients() {
+        if self.server.keeps_lost_clients() {
             for client in self.clients.values_mut().filter(|client| client.connection == connection) {
                 if let Some(step_request) = &mut client.step_request {
                     step_request.open = None;
@@ -455,7 +452,6 @@ impl Session {
             self.physics_step = step.clamp(1e-6, 1.0);
         } else {
             self.world.set_step_length(step).map_err(|error| arguments.failure(316, &format!("{error}.")))?;
-            self.world.use_engine(self.engine);
         }
         Ok(vec![Value::from(1)])
     }
@@ -474,7 +470,6 @@ impl Session {
         let Some(scene) = self.objects.take_changes() else { return };
         // A world that cannot be simulated has no place here: its robots have wheels of a size.
         if let Ok(mut world) = World::with_step(scene, self.world.step_length()) {
-            world.use_engine(self.engine);
             recognition::set_motors(&self.objects, &mut world);
             self.world = world;
             self.drivers.clear();
@@ -526,12 +521,11 @@ impl Session {
             self.take_step();
         }
         let (steps, running) = (self.world.steps(), self.state == State::Running);
-        let real = self.engine != Engine::Ideal;
         let mut answers = Vec::new();
         for client in self.clients.values_mut() {
             let Some(step_request) = &client.step_request else { continue };
-            // Real servers finish a step that was requested before a pause after it.
-            let cancelled = if real { self.state == State::Stopped } else { !running };
+            let cancelled =
+                if self.server.keeps_steps_over_pauses() { self.state == State::Stopped } else { !running };
             let done = step_request.steps <= steps || cancelled;
             if let Some((ticket, _)) = step_request.open.filter(|_| done) {
                 client.step_request = None;

@@ -8,7 +8,7 @@ use pydslrep_kinematics::Drive;
 use pydslrep_scene::{Obstacle, Robot, Scene, SensorKind, Wheel};
 
 use super::*;
-use crate::{Engine, World};
+use crate::{Server, World};
 
 const SECOND: Duration = Duration::from_secs(1);
 
@@ -648,17 +648,17 @@ proptest! {
     }
 }
 
-/// A session as a real engine's, with the simulation running.
-fn engine_lab(engine: Engine) -> Lab {
+/// A session as that of a server of `CoppeliaSim`, with the simulation running.
+fn lab_like(server: Server) -> Lab {
     let mut lab = Lab::new(1);
-    lab.session.use_engine(engine);
+    lab.session.imitate(server);
     lab.start();
     lab
 }
 
 #[test]
 fn a_paused_4_6_answers_nothing_until_it_goes_on() {
-    let mut lab = engine_lab(Engine::CoppeliaSim46);
+    let mut lab = lab_like(Server::CoppeliaSim46);
     lab.join("a");
     let left = lab.object("/robot_1/wheelL");
     lab.call("b", "sim.pauseSimulation", none());
@@ -677,7 +677,7 @@ fn a_paused_4_6_answers_nothing_until_it_goes_on() {
 
 #[test]
 fn requests_during_a_pause_are_bounded() {
-    let mut lab = engine_lab(Engine::CoppeliaSim46);
+    let mut lab = lab_like(Server::CoppeliaSim46);
     lab.call("b", "sim.pauseSimulation", none());
     let answered = (0..5000).filter(|_| {
         let ticket = lab.ask("a", "sim.getSimulationTime", none());
@@ -688,7 +688,7 @@ fn requests_during_a_pause_are_bounded() {
 
 #[test]
 fn a_pause_outlives_clients_with_a_short_timeout() {
-    let mut lab = engine_lab(Engine::CoppeliaSim46);
+    let mut lab = lab_like(Server::CoppeliaSim46);
     let hello = cbor!({ "func" => "sim.setStepping", "args" => [true], "uuid" => "a", "timeout" => 5 });
     lab.send("a", &hello.unwrap());
     lab.call("b", "sim.pauseSimulation", none());
@@ -702,7 +702,7 @@ fn a_pause_outlives_clients_with_a_short_timeout() {
 
 #[test]
 fn a_step_of_a_paused_4_7_takes_no_time() {
-    let mut lab = engine_lab(Engine::CoppeliaSim47);
+    let mut lab = lab_like(Server::CoppeliaSim47);
     lab.join("a");
     lab.join("c");
     let before = lab.ask("a", "sim.step", none());
@@ -717,7 +717,7 @@ fn a_step_of_a_paused_4_7_takes_no_time() {
 
 #[test]
 fn a_lost_client_holds_the_time_until_its_timeout() {
-    let mut lab = engine_lab(Engine::CoppeliaSim46);
+    let mut lab = lab_like(Server::CoppeliaSim46);
     let left = lab.object("/robot_1/wheelL");
     let hello = cbor!({ "func" => "sim.setStepping", "args" => [true], "uuid" => "b", "timeout" => 5 });
     lab.send("b", &hello.unwrap());

@@ -3,7 +3,7 @@
 use pydslrep_scene::Noise;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-use rand_distr::{Distribution, StandardNormal, Uniform};
+use rand_distr::{Distribution, StandardNormal};
 
 /// The time constant of slip, seconds: floor and tyres vary slowly, not from step to step.
 const SLIP_TIME: f64 = 1.0;
@@ -13,9 +13,6 @@ const WORDS_PER_READING: u128 = 256;
 
 /// The first stream for wheels; sensors use those below.
 const WHEELS: u64 = 1 << 48;
-
-/// The first stream for what an engine does to bodies.
-const BODIES: u64 = 1 << 49;
 
 /// The generator of a wheel or sensor; all are independent.
 fn generator(seed: u64, kind: u64, robot: usize, part: usize) -> ChaCha8Rng {
@@ -65,14 +62,6 @@ pub(super) fn reading_error(noise: Option<Noise>, seed: u64, robot: usize, senso
     generator.set_word_pos(u128::from(steps) * WORDS_PER_READING);
     let drawn: f64 = StandardNormal.sample(&mut generator);
     drawn * noise.sensor
-}
-
-/// Three numbers from −1 to 1 for a robot after a number of steps. Reading has no side effects.
-pub(super) fn body_error(seed: u64, robot: usize, steps: u64) -> [f64; 3] {
-    let mut generator = generator(seed, BODIES, robot, 0);
-    generator.set_word_pos(u128::from(steps) * WORDS_PER_READING);
-    let uniform = Uniform::new_inclusive(-1.0, 1.0);
-    std::array::from_fn(|_| uniform.as_ref().map_or(0.0, |uniform| uniform.sample(&mut generator)))
 }
 
 #[cfg(test)]
