@@ -67,9 +67,9 @@ class Heard:
         """Seconds since what it says was so; infinite if there is none."""
         return self._now() - self._born
 
-    def born(self) -> float:
-        """When what it says was so, by the script's clock in seconds."""
-        return self._born
+    def taken(self) -> float:
+        """When what it says was so, in seconds by the publisher's clock, or the script's if it has no stamp."""
+        return self._stamp or self._born
 
     def reason(self) -> str:
         """Why there may be no newer one."""
@@ -272,8 +272,8 @@ class Ros2Robot(Backend):
             raise SimulatorError(f"{topic.name}: {error}") from None
 
     def pose_time(self) -> float:
-        """When its pose was so, by the clock of the script in seconds."""
-        return self._heard[self._topics.pose.name].born()
+        """When its pose was so, in seconds by the clock of its stamps; differences do not depend on when messages came."""
+        return self._heard[self._topics.pose.name].taken()
 
     @property
     def turn_rate(self) -> float:

@@ -157,6 +157,18 @@ def attribute(**values: Any) -> Callable[[FakeRobot], object]:
     return lambda rover: rover.__dict__.update(values)
 
 
+def late_at_first(rover: FakeRobot) -> None:
+    """It turns less than it is told, and its poses are a step late until the turn is being measured."""
+    rover.turning = 0.8
+    say, held = rover._odometry, [rover._odometry()]
+
+    def late() -> Any:
+        held.append(say())
+        return held[-2] if rover.time < 2.0 else held[-1]
+
+    rover._odometry = late  # type: ignore[method-assign]
+
+
 CASES = {
     "no-listener": Case("nobody listens to /rover/cmd_vel", deaf),
     "missing-topic": Case("nobody publishes /rover/range/front", without_front),
@@ -210,6 +222,11 @@ CASES = {
     "track": Case(
         "told to turn by 34.4 deg/s, it turns by 27.5 deg/s, as if its wheels were 0.375 m apart, not 0.300 m",
         attribute(turning=0.8),
+        options=("--drive",),
+    ),
+    "track/late": Case(
+        "told to turn by 34.4 deg/s, it turns by 27.5 deg/s",
+        late_at_first,
         options=("--drive",),
     ),
     "track/scene": Case(
