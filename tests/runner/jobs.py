@@ -6,6 +6,7 @@ import os
 import shutil
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import results
@@ -217,7 +218,7 @@ def in_editors() -> list[Job]:
             "ros",
             ("tests/ros/run.sh ${LONG:+--long}",),
             after=("tools", "build"),
-            read=results.of_pytest,
+            read=partial(results.of_pytest, command="tests/ros/run.sh"),
             editor=True,
         ),
     ]

@@ -38,8 +38,8 @@ def of_nothing(output: str) -> Results:
     return Results()
 
 
-def of_pytest(output: str) -> Results:
-    """Reads the summary of pytest."""
+def of_pytest(output: str, command: str = ".venv/bin/pytest") -> Results:
+    """Reads the summary of pytest; `command` runs a test again."""
     counted = {
         word.removesuffix("s"): int(number)
         for line in output.splitlines()
@@ -50,8 +50,7 @@ def of_pytest(output: str) -> Results:
         r"^(?:FAILED|ERROR) (\S+?\.py(?:::.*?)?)(?: - .*)?$", output, re.MULTILINE
     )
     failures = tuple(
-        Failure(name, f".venv/bin/pytest {shlex.quote(name)}")
-        for name in dict.fromkeys(names)
+        Failure(name, f"{command} {shlex.quote(name)}") for name in dict.fromkeys(names)
     )
     return Results(counted.get("passed", 0), counted.get("skipped", 0), failures)
 

@@ -29,6 +29,14 @@ ERROR python/tests/test_c.py::test_d
     )
 
 
+def test_pytest_in_a_python_of_its_own() -> None:
+    output = "FAILED test_a.py::test_b[c] - assert 1 == 2\n1 failed in 0.12s\n"
+    found = results.of_pytest(output, command="tests/ros/run.sh")
+    assert [each.again for each in found.failures] == [
+        "tests/ros/run.sh 'test_a.py::test_b[c]'"
+    ]
+
+
 def test_nextest() -> None:
     report = """<testsuites>
   <testsuite name="pydslrep-analysis"><testcase name="plan::tests::one"/></testsuite>
