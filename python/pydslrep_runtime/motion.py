@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Protocol
+from typing import Protocol, cast
 
 from . import events
 from .approach import Approach, Brake
@@ -14,6 +14,7 @@ from .drives import Drive
 from .errors import MovementError
 from .event_loop import SimulationLoop
 from .facts import RIM_SPEED
+from .noted_readings import NotedReadings
 from .notes import Notes
 from .pace import Pace
 from .places import Place
@@ -93,6 +94,10 @@ class Motion:
     ) -> None:
         """`order` is the robot's place among those that act in the same step."""
         self.spec, self.backend, self.drive = spec, backend, drive
+        self._readings: NotedReadings | None = None
+        if trace.is_written:
+            self._readings = NotedReadings(backend, spec.bumpers)
+            self.backend = cast("Backend", self._readings)
         self.name = spec.name
         # What it does, for messages, the trace and events.
         self.place, self.action_text = Place(), ""
@@ -411,8 +416,11 @@ class Motion:
         return self._planned or here
 
     def _record(self, here: Pose, rates: Sequence[float]) -> None:
-        time = self.backend.clock.time
-        self._trace.add(time, self.name, here, rates, self.place, self.action)
+        if self._readings is None:
+            return
+        time, readings = self.backend.clock.time, self._readings.take()
+        action, place = self.action, self.place
+        self._trace.add(time, self.name, here, rates, place, action, readings)
 
     def _approach(self, speed: float, rims: float = math.inf) -> Approach:
         """The approach of an action in which rims roll so many metres per radian."""

@@ -1,7 +1,7 @@
 """The trace of a run."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TextIO
 
 from .places import Place
@@ -23,8 +23,9 @@ class Trace:
         wheels: Sequence[float],
         place: Place,
         action: str,
+        readings: Mapping[str, float | None],
     ) -> None:
-        """Writes a line: seconds, metres, radians, the wheels' rad/s, and the action with its number."""
+        """Writes a line: seconds, metres, radians, the wheels' rad/s, the action with its number, and what sensors read."""
         if self._file is None:
             return
         row: dict[str, object] = {
@@ -40,4 +41,9 @@ class Trace:
         if place.line is not None:
             row["line"] = place.line
         row |= place.parts()
+        if readings:
+            row["readings"] = {
+                sensor: None if distance is None else round(distance, 6) + 0.0
+                for sensor, distance in readings.items()
+            }
         self._file.write(json.dumps(row) + "\n")

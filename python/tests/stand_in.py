@@ -145,15 +145,24 @@ class StandIn(Backend):
 
 
 def drive(
-    robot: StandIn, actions: Callable[[Robot], Coroutine[Any, Any, None]]
+    robot: StandIn,
+    actions: Callable[[Robot], Coroutine[Any, Any, None]],
+    trace: Trace | None = None,
+    bumpers: Sequence[str] = (),
 ) -> float:
     """Drives a robot; returns the seconds that it has taken, and raises what ends it early."""
     wheels = {name: (name, RADIUS) for name in WHEELS[robot.kind]}
-    sensors = tuple(robot.sensors)
-    declared = ROBOTS[robot.kind]("r", port=1, sensors=sensors, **wheels)  # type: ignore[arg-type]
+    sensors = tuple(sensor for sensor in robot.sensors if sensor not in bumpers)
+    declared = ROBOTS[robot.kind](
+        "r",
+        port=1,
+        sensors=sensors,
+        bumpers=bumpers,
+        **wheels,  # type: ignore[arg-type]
+    )
     spec = declared.spec("", 1)
     loop = SimulationLoop()
-    declared.connect(spec, CheckedBackend(robot, spec), loop, 0, Trace())
+    declared.connect(spec, CheckedBackend(robot, spec), loop, 0, trace or Trace())
 
     async def main() -> None:
         movements.current.set(Movement("m"))

@@ -35,6 +35,7 @@ LAYERS = (
     "trace",
     "backend",
     "checked_backend",
+    "noted_readings",
     "conditions",
     "remote_api",
     "patience",

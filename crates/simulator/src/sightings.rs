@@ -8,7 +8,7 @@ const RESOLUTION: f64 = 0.005;
 /// The maximum number of points; a picture could not show more.
 const MAX_POINTS: usize = 100_000;
 
-/// Points on the floor that sensor readings have reported to clients.
+/// Points on the floor that sensor readings have reported.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Sightings {
     /// A robot, and a point in multiples of the resolution.
@@ -17,7 +17,7 @@ pub struct Sightings {
 
 impl Sightings {
     /// Adds a point in metres.
-    pub(crate) fn add(&mut self, robot: usize, (x, y): (f64, f64)) {
+    pub fn add(&mut self, robot: usize, (x, y): (f64, f64)) {
         if self.points.len() < MAX_POINTS {
             #[allow(clippy::cast_possible_truncation)] // saturates far outside any picture
             let cell = |metres: f64| (metres / RESOLUTION).round() as i64;

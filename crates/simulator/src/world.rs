@@ -6,6 +6,8 @@ mod movers;
 mod noise;
 mod robot;
 
+use std::collections::BTreeMap;
+
 use pydslrep_kinematics::{Pose, Twist, motion};
 use pydslrep_scene::{Body, Scene, SensorKind, Sighting, Space};
 use pydslrep_trace::TraceRecord;
@@ -278,7 +280,18 @@ impl World {
         self.robots.iter().zip(&self.scene.robots).map(move |(state, robot)| {
             let Pose { x, y, theta } = state.pose;
             let wheels = state.joints.iter().map(|joint| joint.rate).collect();
-            TraceRecord { t, robot: robot.name.clone(), x, y, theta, wheels, movement: None, action: None }
+            let readings = BTreeMap::new();
+            TraceRecord {
+                t,
+                robot: robot.name.clone(),
+                x,
+                y,
+                theta,
+                wheels,
+                readings,
+                movement: None,
+                action: None,
+            }
         })
     }
 

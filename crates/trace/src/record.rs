@@ -1,5 +1,7 @@
 //! The records of a trace.
 
+use std::collections::BTreeMap;
+
 use pydslrep_kinematics::{Pose, TimedPose};
 use serde::{Deserialize, Serialize};
 
@@ -19,6 +21,10 @@ pub struct TraceRecord {
     /// Wheel rates, rad/s, in the order of the robot's wheels; positive values roll forward.
     #[serde(default)]
     pub wheels: Vec<f64>,
+    /// What its sensors have read since its record before: metres, or `None` for nothing, by name. A bumper that is pressed
+    /// reads 0. Only what a script has looked at; unknown to the simulator.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub readings: BTreeMap<String, Option<f64>>,
     /// The current movement; unknown to the simulator.
     #[serde(default)]
     pub movement: Option<String>,
@@ -58,6 +64,7 @@ mod tests {
             y: -2.0,
             theta: 0.5,
             wheels: vec![1.5, 1.5],
+            readings: BTreeMap::from([("front".to_owned(), Some(0.25)), ("rear".to_owned(), None)]),
             movement: None,
             action: Some("turn left".to_owned()),
         };

@@ -1,5 +1,6 @@
 //! The ZeroMQ remote API, driven by clients and disturbed by invalid connections.
 
+use std::collections::BTreeMap;
 use std::io::{ErrorKind, Read, Write};
 use std::net::TcpStream;
 
@@ -197,6 +198,7 @@ fn records_are_lines_of_the_trace_format() {
         y: -1.0,
         theta: 0.5,
         wheels: vec![1.0, 2.0],
+        readings: BTreeMap::new(),
         movement: None,
         action: None,
     };
