@@ -8,8 +8,8 @@ use clap::{Parser, Subcommand, ValueEnum};
 use pydslrep_workspace::DocumentKind;
 
 use crate::commands::{
-    build, check, completions, doctor, explain, fmt, lsp, new, own, plan, preview, run, scene, share, sim,
-    stats,
+    build, check, completions, doctor, explain, fmt, lsp, new, own, plan, preview, replay, run, scene, share,
+    sim, stats,
 };
 use crate::failure::Failure;
 use crate::help::{self, Help};
@@ -63,6 +63,7 @@ pub(crate) enum Command {
     Sim(sim::Arguments),
     Scene(scene::Arguments),
     Plan(plan::Arguments),
+    Replay(replay::Arguments),
     Preview(preview::Arguments),
     Doctor(doctor::Arguments),
     Fmt(fmt::Arguments),

@@ -48,6 +48,7 @@ fn main() -> ExitCode {
         Command::Sim(arguments) => commands::sim::run(&arguments),
         Command::Scene(arguments) => commands::scene::run(&arguments),
         Command::Plan(arguments) => commands::plan::run(&arguments),
+        Command::Replay(arguments) => commands::replay::run(&arguments),
         Command::Preview(arguments) => commands::preview::run(&arguments),
         Command::Doctor(arguments) => commands::doctor::run(&arguments),
         Command::Fmt(arguments) => commands::fmt::run(&arguments),

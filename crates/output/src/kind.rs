@@ -16,6 +16,13 @@ const START: u64 = 64 << 10;
 /// What pictures say of themselves (`picture/src/lib.rs`).
 const PICTURE_MARK: &str = "Drawn by PyDSLRep";
 
+/// How bags begin, and what ours say of themselves right after it (`bag/src/lib.rs`).
+const BAG_MAGIC: &[u8] = b"\x89MCAP0\r\n";
+const BAG_LIBRARY: &[u8] = b"PyDSLRep";
+
+/// Where the library of a bag is at the latest: a record's head, a profile and the lengths of both are in front of it.
+const BAG_HEAD: usize = 128;
+
 /// How worlds begin (`scene/src/mjcf/mod.rs`).
 const WORLD_MARK: &[u8] = b"<!-- A world for MuJoCo, written by PyDSLRep -->";
 
@@ -26,6 +33,8 @@ pub enum Kind {
     Script,
     /// The steps of a run, as JSON lines.
     Trace,
+    /// The steps of a run, as MCAP.
+    Bag,
     /// What robots explored, as JSON.
     Map,
     /// The result of a run, as JSON.
@@ -44,6 +53,7 @@ impl Kind {
         match self {
             Self::Script => "a generated script",
             Self::Trace => "a trace",
+            Self::Bag => "a trace by PyDSLRep",
             Self::Map => "a map",
             Self::Figures => "the result of a run",
             Self::Picture => "a picture by PyDSLRep",
@@ -55,7 +65,7 @@ impl Kind {
     /// Whether a file is of this kind, and as this program wrote it.
     pub(crate) fn inspect(self, path: &Path) -> Result<Origin, ReadError> {
         let content = match self {
-            Self::Trace | Self::Picture | Self::Events | Self::World => read_start(path, START)?,
+            Self::Trace | Self::Bag | Self::Picture | Self::Events | Self::World => read_start(path, START)?,
             Self::Script | Self::Map | Self::Figures => match read_bytes(path, MAX_BYTES) {
                 Err(ReadError::TooLarge) => return Ok(Origin::Foreign),
                 read => read?,
@@ -73,6 +83,7 @@ impl Kind {
             Self::Map => has_keys(content, &["environment", "nodes", "edges"]),
             Self::Figures => has_keys(content, &["environment", "complete", "simulated", "robots"]),
             Self::Picture => is_picture(content),
+            Self::Bag => is_bag(content),
             Self::World => content.starts_with(WORLD_MARK),
         };
         if is_ours { Origin::Generated } else { Origin::Foreign }
@@ -88,6 +99,12 @@ fn has_keys(json: &[u8], keys: &[&str]) -> bool {
     keys.iter().all(|key| found.contains_key(*key))
 }
 
+/// An MCAP file whose header has our name.
+fn is_bag(content: &[u8]) -> bool {
+    let head = &content[..content.len().min(BAG_HEAD)];
+    head.starts_with(BAG_MAGIC) && head.windows(BAG_LIBRARY.len()).any(|window| window == BAG_LIBRARY)
+}
+
 /// An SVG or PNG with our mark.
 fn is_picture(content: &[u8]) -> bool {
     let is_one = content.starts_with(b"<svg") || content.starts_with(b"\x89PNG\r\n\x1a\n");
@@ -100,22 +117,25 @@ mod tests {
 
     #[test]
     fn each_kind_knows_its_own() {
-        let ours: [(Kind, &str); 6] = [
-            (Kind::Trace, "{\"t\": 0.05, \"robot\": \"r\", \"x\": 0, \"y\": 0, \"theta\": 0}\nand so on"),
-            (Kind::Map, "{\"environment\": \"e\", \"nodes\": [], \"edges\": []}"),
-            (Kind::Figures, "{\"environment\":\"e\",\"complete\":true,\"simulated\":1,\"robots\":[]}"),
-            (Kind::Events, "{\"event\": \"started\"}\n{\"event\": \"note\"}"),
-            (Kind::World, "<!-- A world for MuJoCo, written by PyDSLRep -->\n<mujoco/>"),
-            (Kind::Picture, "<svg><!-- Drawn by PyDSLRep --></svg>"),
+        let ours: [(Kind, &[u8]); 7] = [
+            (Kind::Trace, b"{\"t\": 0.05, \"robot\": \"r\", \"x\": 0, \"y\": 0, \"theta\": 0}\nand so on"),
+            (Kind::Map, b"{\"environment\": \"e\", \"nodes\": [], \"edges\": []}"),
+            (Kind::Figures, b"{\"environment\":\"e\",\"complete\":true,\"simulated\":1,\"robots\":[]}"),
+            (Kind::Events, b"{\"event\": \"started\"}\n{\"event\": \"note\"}"),
+            (Kind::Bag, b"\x89MCAP0\r\n\x01\x1d\0\0\0\0\0\0\0\x04\0\0\0ros2\x0e\0\0\0PyDSLRep 0.2.0"),
+            (Kind::World, b"<!-- A world for MuJoCo, written by PyDSLRep -->\n<mujoco/>"),
+            (Kind::Picture, b"<svg><!-- Drawn by PyDSLRep --></svg>"),
         ];
         for (kind, content) in ours {
             assert_eq!(kind.origin(b""), Origin::Generated);
             for (other, _) in ours {
                 let expected = if other == kind { Origin::Generated } else { Origin::Foreign };
-                assert_eq!(other.origin(content.as_bytes()), expected, "{content} as {other:?}");
+                assert_eq!(other.origin(content), expected, "{kind:?} as {other:?}");
             }
-            assert_eq!(Kind::Script.origin(content.as_bytes()), Origin::Foreign);
-            for foreign in [&b"wheel a with radius 4\n"[..], b"{}", b"<svg></svg>", b"\xff", b"[]\n"] {
+            assert_eq!(Kind::Script.origin(content), Origin::Foreign);
+            for foreign in
+                [&b"wheel a with radius 4\n"[..], b"{}", b"<svg></svg>", b"\x89MCAP0\r\n", b"\xff", b"[]\n"]
+            {
                 assert_eq!(kind.origin(foreign), Origin::Foreign, "{kind:?}");
             }
         }

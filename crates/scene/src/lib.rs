@@ -25,7 +25,7 @@ pub use mjcf::mjcf;
 pub use mount::{Mount, mounts_by_name};
 pub use obstacle::{Obstacle, Shape};
 pub use robot::{Body, Frame, Objects, Robot, Sensor, SensorKind, Wheel};
-pub use ros2::{Ros2, Ros2Value};
+pub use ros2::{Ros2, Ros2Value, Topics};
 pub use space::{Near, Sighting, Space, Thing, distance_between, triangulate};
 pub use trajectory::{Piece, Trajectory, TrajectoryError, Waypoint};
 

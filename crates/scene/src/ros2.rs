@@ -2,7 +2,7 @@
 
 use pydslrep_schema::Section;
 
-use crate::{Robot, defaults};
+use crate::{Robot, SCHEMA, defaults};
 
 /// The value of a key of `[robots.NAME.ros2]`.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,6 +17,33 @@ pub enum Ros2Value {
 
 /// The keys that are not as usual, in the order of the list, with their values.
 pub type Ros2 = Vec<(&'static str, Ros2Value)>;
+
+/// What the topics and frames of a robot are called.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Topics {
+    namespace: String,
+    ranges: String,
+    /// Of its odometry.
+    pub odometry: String,
+    /// Of its poses, if they do not come from its odometry.
+    pub pose: Option<String>,
+    /// The frame of its wheels' centre.
+    pub base_frame: String,
+    /// The frame of its odometry.
+    pub odometry_frame: String,
+}
+
+impl Topics {
+    /// The topic of a sensor.
+    pub fn range(&self, sensor: &str) -> String {
+        self.absolute(&self.ranges.replace("{sensor}", sensor))
+    }
+
+    /// The topic of a name in the robot's namespace, unless the name begins with `/`.
+    pub fn absolute(&self, name: &str) -> String {
+        if name.starts_with('/') { name.to_owned() } else { format!("{}/{name}", self.namespace) }
+    }
+}
 
 /// Reads the table of a robot.
 pub(crate) fn read(section: &Section) -> Ros2 {
@@ -42,6 +69,36 @@ fn is_usual(default: &str, value: &Ros2Value) -> bool {
 }
 
 impl Robot {
+    /// What its topics are called; scripts come to the same names (`python/pydslrep_runtime/ros2_topics.py`).
+    pub fn topics(&self) -> Topics {
+        let namespace = self.ros2_name("namespace").unwrap_or_else(|| format!("/{}", self.name));
+        let usual = |key| self.ros2_name(key).unwrap_or_default();
+        let mut topics = Topics {
+            namespace: namespace.trim_end_matches('/').to_owned(),
+            ranges: usual("ranges"),
+            odometry: String::new(),
+            pose: None,
+            base_frame: usual("base-frame"),
+            odometry_frame: usual("odom-frame"),
+        };
+        topics.odometry = topics.absolute(&usual("odom"));
+        topics.pose = self.ros2_name("pose").map(|pose| topics.absolute(&pose));
+        topics
+    }
+
+    /// The value of a key that has a name for value, or its default.
+    fn ros2_name(&self, key: &str) -> Option<String> {
+        let written = self.ros2.iter().find_map(|(known, value)| match value {
+            Ros2Value::Text(text) if *known == key => Some(text.clone()),
+            _ => None,
+        });
+        written.or_else(|| {
+            let table = SCHEMA.table("robots.NAME.ros2")?;
+            let default = table.keys.iter().find(|each| each.name == key)?.default_value()?;
+            Some(default.trim_matches('"').to_owned())
+        })
+    }
+
     /// What a script has to know: its table, and the distances between its wheels, which no topic tells.
     pub fn ros2(&self) -> Ros2 {
         let mut all = self.ros2.clone();

@@ -11,6 +11,7 @@ pub(crate) mod new;
 pub(crate) mod own;
 pub(crate) mod plan;
 pub(crate) mod preview;
+pub(crate) mod replay;
 pub(crate) mod run;
 pub(crate) mod scene;
 pub(crate) mod share;

@@ -20,7 +20,7 @@ use crate::help::Help;
 use crate::inputs::{Inputs, paths, program};
 use crate::options::{Engine, above_zero, edition_parser, target_parser};
 use crate::report::output;
-use crate::run::driven::Driven;
+use crate::run::driven::{self, Driven};
 use crate::run::interrupt::{self, Interrupts};
 use crate::run::mujoco::World;
 use crate::run::outcome::Outcome;
@@ -31,6 +31,7 @@ use crate::run::progress::Progress;
 use crate::run::python::{self, Packages, Watcher};
 use crate::run::reporter::{self, Reporter, is_standard_output};
 use crate::run::script::{Listener, Script, drive};
+use crate::run::trace_file::{self, TraceFile};
 use crate::run::{exploring, script, strikes, vrep_client};
 
 const HELP: Help = Help {
@@ -88,7 +89,7 @@ pub(crate) struct Arguments {
     edition: Option<Edition>,
     #[command(flatten)]
     pictures: Pictures,
-    /// Write every step to a file, as JSON lines
+    /// Write every step to a file: as JSON lines or, where its name ends in .mcap, as messages of ROS 2
     #[arg(long, value_name = "FILE")]
     trace: Option<PathBuf>,
     /// Write the map of robots that explore to a file, as JSON [default: `ENVIRONMENT_map.json`]
@@ -139,7 +140,7 @@ impl Arguments {
     /// The files to write.
     fn outputs<'a>(&'a self, map: Option<&'a Path>) -> Vec<(&'a Path, Kind)> {
         let others = [
-            (self.trace.as_deref(), Kind::Trace),
+            (self.trace.as_deref(), self.trace.as_deref().map_or(Kind::Trace, trace_file::kind)),
             (map, Kind::Map),
             (self.figures.as_deref(), Kind::Figures),
             (self.events.as_deref().filter(|path| !is_standard_output(path)), Kind::Events),
@@ -314,9 +315,8 @@ impl Run<'_> {
                 world.as_ref(),
             ),
         };
-        let robots = self.planned.environment.robots.iter().map(|robot| robot.name.as_str());
         let in_scene = if is_embedded { self.simulated.clone() } else { Vec::new() };
-        let mut driven = Driven::new(robots, in_scene);
+        let mut driven = Driven::new(&self.planned.scene.robots, in_scene);
         let mut progress = Progress::new(&self.planned, self.arguments.no_progress);
         let begin = Instant::now();
         let listener = Listener::new(simulator.as_ref(), &mut driven, &mut progress, self.reporter);
@@ -338,6 +338,7 @@ impl Run<'_> {
             let _ = driven.read(trace);
             self.planned.start_from(&driven)?;
         }
+        self.keep_bag(trace.as_deref())?;
         driven.maps = self.keep_map(&map)?;
         self.report(ending?, &driven, wall)
     }
@@ -414,10 +415,30 @@ impl Run<'_> {
         Simulator::start(self.simulated_scene(), &options).map_err(|error| Failure::new(error.to_string()))
     }
 
-    /// Where the script writes its trace: where the user wants it, or a temporary file if the path is known from nothing else.
+    /// Where the script writes its trace: where the user wants it, or a temporary file if it is to be a bag, or if the path is
+    /// known from nothing else.
     fn trace(&self, folder: &Path) -> Option<PathBuf> {
-        let temporary = || self.needs_trace().then(|| folder.join("trace.jsonl"));
-        self.arguments.trace.clone().or_else(temporary)
+        let lines = self.arguments.trace.as_ref().filter(|path| !trace_file::is_bag(path));
+        let needs_one = self.arguments.trace.is_some() || self.needs_trace();
+        lines.cloned().or_else(|| needs_one.then(|| folder.join("trace.jsonl")))
+    }
+
+    /// Makes the bag that is wanted of the script's trace. Without steps, nothing replaces an older one.
+    fn keep_bag(&self, trace: Option<&Path>) -> Result<(), Failure> {
+        let Some(path) = self.arguments.trace.as_deref().filter(|path| trace_file::is_bag(path)) else {
+            return Ok(());
+        };
+        let records = trace.map(driven::records).transpose();
+        let mut records = records.ok().flatten().into_iter().flatten().peekable();
+        if records.peek().is_none() {
+            return Ok(());
+        }
+        let mut bag = TraceFile::begin(path, &self.planned.scene.robots)?;
+        bag.plan(&self.planned);
+        for record in records {
+            bag.add(&[record.map_err(|error| Failure::unwritten(path, &error))?])?;
+        }
+        bag.finish()
     }
 
     fn script_arguments(
@@ -495,7 +516,7 @@ impl Run<'_> {
         wall: std::time::Duration,
     ) -> Result<u8, Failure> {
         let is_complete = ending.is_none();
-        let outcome = Outcome { planned: &self.planned, driven, wall, is_complete };
+        let outcome = Outcome { planned: &self.planned, driven, wall: Some(wall), is_complete };
         if let Some(failure) = &ending {
             self.reporter.report_failure(failure);
         }

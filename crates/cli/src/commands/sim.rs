@@ -8,11 +8,10 @@ use std::time::Duration;
 use clap::Args;
 use pydslrep_analysis::environment::Environment;
 use pydslrep_config::Config;
-use pydslrep_output::{GrowingFile, Kind, check_outputs};
-use pydslrep_scene::{Scene, defaults};
+use pydslrep_output::check_outputs;
+use pydslrep_scene::{Robot, Scene, defaults};
 use pydslrep_script::file_name;
 use pydslrep_simulator::{Options, Server, Simulator};
-use pydslrep_trace::lines;
 use tokio::time::{MissedTickBehavior, interval};
 
 use crate::failure::Failure;
@@ -23,6 +22,7 @@ use crate::options::{Engine, above_zero, server_parser};
 use crate::report::output;
 use crate::run::interrupt::{self, Interrupts};
 use crate::run::ros2_world::{self, Node, World};
+use crate::run::trace_file::{self, TraceFile};
 
 const HELP: Help = Help {
     examples: &[
@@ -79,7 +79,7 @@ pub(crate) struct Arguments {
     /// Simulated seconds per second while no script steps the simulation
     #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = above_zero)]
     speed: f64,
-    /// Write every step to a file, as JSON lines; it is called FILE.partial until the simulator stops
+    /// Write every step to a file: as JSON lines or, where its name ends in .mcap, as messages of ROS 2; it is called FILE.partial until the simulator stops
     #[arg(long, value_name = "FILE")]
     trace: Option<PathBuf>,
     /// Be a node of ROS 2, with the topics of the scene, in place of the ports
@@ -122,13 +122,11 @@ fn check_mujoco(arguments: &Arguments) -> Result<(), Failure> {
 
 /// Serves a floor that clients build something on.
 fn simulate_empty_floor(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    let trace = match &arguments.trace {
-        Some(path) => {
-            check_outputs(&[(path, Kind::Trace)], &[] as &[&Path])?;
-            Some(GrowingFile::begin(path, Kind::Trace)?)
-        }
-        None => None,
-    };
+    if arguments.trace.as_deref().is_some_and(trace_file::is_bag) {
+        return Err(Failure::new("a trace in MCAP needs to know the robots, and there is no program")
+            .help("use a name that does not end in .mcap"));
+    }
+    let trace = trace(arguments, &[] as &[&Path], &[])?;
     let scene = Scene { seed: arguments.seed.unwrap_or(defaults::SEED), ..Scene::default() };
     serve(arguments, scene, vec![arguments.port], trace, None, |ports| {
         let port = ports.first().copied().unwrap_or(arguments.port);
@@ -148,13 +146,7 @@ fn simulate(arguments: &Arguments, program: &Path) -> Result<ExitCode, Failure> 
     let script = inputs.script_folder(file).map(|folder| folder.join(file_name(&environment)));
     let mut scene = inputs.scene(file, &environment)?;
     scene.seed = arguments.seed.unwrap_or(scene.seed);
-    let trace = match &arguments.trace {
-        Some(path) => {
-            check_outputs(&[(path, Kind::Trace)], &inputs.read_paths())?;
-            Some(GrowingFile::begin(path, Kind::Trace)?)
-        }
-        None => None,
-    };
+    let trace = trace(arguments, &inputs.read_paths(), &scene.robots)?;
     if arguments.ros2 {
         let choice = ros2_world::Choice {
             python: arguments.python.as_deref(),
@@ -178,12 +170,23 @@ fn simulate(arguments: &Arguments, program: &Path) -> Result<ExitCode, Failure> 
     })
 }
 
+/// The trace to write, if any.
+fn trace(
+    arguments: &Arguments,
+    inputs: &[impl AsRef<Path>],
+    robots: &[Robot],
+) -> Result<Option<TraceFile>, Failure> {
+    let Some(path) = &arguments.trace else { return Ok(None) };
+    check_outputs(&[(path, trace_file::kind(path))], inputs)?;
+    TraceFile::begin(path, robots).map(Some)
+}
+
 /// Runs the simulator until an interrupt, as a node of ROS 2 if that is chosen; `greeting` gets its ports.
 fn serve(
     arguments: &Arguments,
     scene: Scene,
     ports: Vec<u16>,
-    mut trace: Option<GrowingFile>,
+    mut trace: Option<TraceFile>,
     node: Option<ros2_world::Choice<'_>>,
     greeting: impl FnOnce(&[u16]) -> String,
 ) -> Result<ExitCode, Failure> {
@@ -217,7 +220,7 @@ fn serve(
                 () = interrupts.next() => break,
                 failure = ended(&mut node) => return Err(failure),
                 _ = writes.tick(), if trace.is_some() => if let Some(trace) = &mut trace {
-                    trace.add(&lines(&simulator.take_trace()))?;
+                    trace.add(&simulator.take_trace())?;
                 },
             }
         }
@@ -226,8 +229,8 @@ fn serve(
         }
         let rest = simulator.stop();
         let Some(mut trace) = trace else { return Ok(()) };
-        trace.add(&lines(&rest))?;
-        Ok::<(), Failure>(trace.finish()?)
+        trace.add(&rest)?;
+        trace.finish()
     })?;
     Ok(ExitCode::from(interrupt::EXIT_CODE))
 }

@@ -17,8 +17,8 @@ use crate::run::planned::Planned;
 pub(crate) struct Outcome<'a> {
     pub(crate) planned: &'a Planned,
     pub(crate) driven: &'a Driven,
-    /// Wall time from the start of the script to its end.
-    pub(crate) wall: Duration,
+    /// Wall time from the start of the script to its end; `None` for a run that was recorded some time.
+    pub(crate) wall: Option<Duration>,
     /// Whether every movement was completed.
     pub(crate) is_complete: bool,
 }
@@ -33,8 +33,8 @@ pub(crate) struct Figures<'a> {
     planned: Option<f64>,
     /// Duration in simulation time.
     simulated: f64,
-    /// Duration in wall time.
-    wall: f64,
+    /// Duration in wall time; `None` for a run that was recorded some time.
+    wall: Option<f64>,
     robots: Vec<RobotFigures<'a>>,
 }
 
@@ -93,7 +93,7 @@ impl Outcome<'_> {
             complete: self.is_complete,
             planned: self.planned.plan.duration,
             simulated: self.driven.time,
-            wall: self.wall.as_secs_f64(),
+            wall: self.wall.map(|wall| wall.as_secs_f64()),
             robots: robots.collect(),
         }
     }
@@ -141,14 +141,14 @@ impl Figures<'_> {
     }
 
     fn times(&self) -> String {
-        let factor = if self.wall > 0.0 { self.simulated / self.wall } else { 0.0 };
         let planned =
             self.planned.map_or_else(String::new, |seconds| format!(" (planned: {} s)", fixed(seconds, 1)));
+        let (environment, seconds) = (self.environment, fixed(self.simulated, 1));
+        let Some(wall) = self.wall else { return format!("{environment}: {seconds} s{planned} recorded") };
+        let factor = if wall > 0.0 { self.simulated / wall } else { 0.0 };
         format!(
-            "{}: {} s{planned} simulated in {} s, {} times real time",
-            self.environment,
-            fixed(self.simulated, 1),
-            fixed(self.wall, 1),
+            "{environment}: {seconds} s{planned} simulated in {} s, {} times real time",
+            fixed(wall, 1),
             fixed(factor, usize::from(factor < 10.0)),
         )
     }
@@ -183,7 +183,7 @@ mod tests {
             complete: true,
             planned: Some(10.04),
             simulated: 10.06,
-            wall: 0.55,
+            wall: Some(0.55),
             robots: vec![
                 RobotFigures {
                     name: "rover",

@@ -1,0 +1,22 @@
+//! Runs as bags of ROS 2: MCAP files with the messages that a robot's driver publishes.
+//!
+//! Knows poses and traces. Must never know the language, scenes or files: callers open them.
+//!
+//! * [`BagWriter`]: writes the records of a trace, and planned paths.
+//! * [`read`]: the poses and the readings in a bag, whoever recorded it.
+
+mod compression;
+mod error;
+mod messages;
+mod read;
+mod write;
+
+pub use error::BagError;
+pub use read::{Reading, Recording, Topic, read};
+pub use write::{BagWriter, RobotTopics, SensorTopic};
+
+/// How MCAP files begin.
+pub const MAGIC: &[u8] = mcap::MAGIC;
+
+/// What the bags of this program say of themselves, near their beginning.
+pub const LIBRARY: &str = "PyDSLRep";
