@@ -71,6 +71,25 @@ def command() -> str:
     return os.environ.get("PYDSLREP", str(DEBUG / "pydslrep"))
 
 
+SHORT = """wheel l with radius 4.5
+wheel r with radius 4.5
+sensor front : distance
+robot rover with port 23000 has { l r } wheels with sensors { front }
+movement m of rover { move 30 centimeters turn right move 2 meters until { front } detect within 50 centimeters }
+environment yard has { rover } robots with { m } moves
+"""
+SCENE = "[[wall]]\nfrom = [-1, -0.9]\nto = [2, -0.9]\n"
+
+
+@pytest.fixture
+def short(tmp_path: pathlib.Path) -> pathlib.Path:
+    """A program with a turn and a condition, and its scene."""
+    program = tmp_path / "short.pyr"
+    program.write_text(SHORT, encoding="utf-8")
+    (tmp_path / "yard.scene.toml").write_text(SCENE, encoding="utf-8")
+    return program
+
+
 Start = Callable[..., "subprocess.Popen[str]"]
 
 

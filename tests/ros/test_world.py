@@ -29,15 +29,6 @@ STANDS = 0.6  # s after its last command within which a robot stands
 OFF = {"embedded": (0.005, 0.5), "mujoco": (0.02, 1.5)}
 ENGINES = pytest.mark.parametrize("engine", OFF)
 
-SHORT = """wheel l with radius 4.5
-wheel r with radius 4.5
-sensor front : distance
-robot rover with port 23000 has { l r } wheels with sensors { front }
-movement m of rover { move 30 centimeters turn right move 2 meters until { front } detect within 50 centimeters }
-environment yard has { rover } robots with { m } moves
-"""
-SCENE = "[[wall]]\nfrom = [-1, -0.9]\nto = [2, -0.9]\n"
-
 ROOM = """[world]
 size = [3, 3]
 corner = [0, 0]
@@ -92,15 +83,6 @@ def start_world(
         # A program may have warnings.
         before.append(line)
     pytest.fail(f"the world has ended: {''.join(before)}")
-
-
-@pytest.fixture
-def short(tmp_path: pathlib.Path) -> pathlib.Path:
-    """A program with a turn and a condition, and its scene."""
-    program = tmp_path / "short.pyr"
-    program.write_text(SHORT, encoding="utf-8")
-    (tmp_path / "yard.scene.toml").write_text(SCENE, encoding="utf-8")
-    return program
 
 
 @ENGINES
