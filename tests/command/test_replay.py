@@ -120,6 +120,15 @@ def test_a_bag_has_what_the_lines_have(command: str, tmp_path: pathlib.Path) -> 
         assert (last.x, last.y) == pytest.approx((end["x"], end["y"]), abs=1e-4)
 
 
+def test_the_page_has_what_lines_have(command: str, folder: pathlib.Path) -> None:
+    page = (EXAMPLES.parent / "docs" / "traces.md").read_text(encoding="utf-8")
+    (example,) = re.findall(r"^\{.*\}$", page, flags=re.MULTILINE)
+    say(command, folder, "run", "yard.pyr", "--no-progress", "--trace", "run.jsonl")
+    told = lines((folder / "run.jsonl").read_text(encoding="utf-8"))
+    longest = max(told, key=len)
+    assert [*json.loads(example)] == [*longest]
+
+
 def test_topics_and_frames_are_those_of_the_scene(
     command: str, folder: pathlib.Path
 ) -> None:

@@ -24,6 +24,7 @@ MAY_KNOW: dict[str, set[str]] = {
     "files": {"text", "workspace"},
     "output": {"script", "workspace", "files"},
     "trace": {"kinematics"},
+    "bag": {"kinematics", "trace"},
     "picture": {"kinematics", "scene", "trace"},
     "simulator": {"kinematics", "scene", "trace"},
     "server": {
@@ -55,6 +56,7 @@ MAY_KNOW: dict[str, set[str]] = {
         "kinematics",
         "scene",
         "analysis",
+        "bag",
         "config",
         "ide",
         "script",
