@@ -18,6 +18,7 @@ LAYERS = (
     "places",
     "errors",
     "readings",
+    "answers",
     "outputs",
     "ros2_topics",
     "pose",

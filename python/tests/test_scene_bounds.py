@@ -7,9 +7,9 @@ from itertools import count
 from typing import Any
 
 import pytest
+from pydslrep_runtime.answers import answer
 from pydslrep_runtime.errors import SimulatorError
 from pydslrep_runtime.readings import MAX_DEPTH, MAX_NAMESAKES, read_mark
-from pydslrep_runtime.scene import __main__ as requests
 from pydslrep_runtime.scene.lookup import objects_at
 from pydslrep_runtime.scene.reader import SceneReader
 
@@ -106,10 +106,7 @@ def test_a_mark_is_checked(wrong: str) -> None:
         (lambda _: "x" * int("9" * 5000), "internal error: ValueError"),
     ],
 )
-def test_an_answer_is_always_one(
-    monkeypatch: pytest.MonkeyPatch, task: Callable[[Any], Any], words: str
-) -> None:
-    monkeypatch.setattr(requests, "TASKS", {"test": task})
-    text, code = requests.answer('{"task": "test"}')
+def test_an_answer_is_always_one(task: Callable[[Any], Any], words: str) -> None:
+    text, code = answer('{"task": "test"}', task)
     assert json.loads(text)["error"].startswith(words)
     assert code == 2

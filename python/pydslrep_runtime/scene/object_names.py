@@ -5,8 +5,8 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import replace
 
+from ..answers import RefusalError
 from .description import RobotDescription, SensorDescription, WheelDescription
-from .refusal import RefusalError
 
 
 def alias_of(name: str) -> str:

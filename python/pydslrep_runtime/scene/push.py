@@ -4,6 +4,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace as changed
 
+from ..answers import RefusalError
 from ..remote_api import Connection
 from .checks import check_steps
 from .description import ObstacleDescription, RobotDescription, SceneDescription
@@ -13,7 +14,6 @@ from .marks import Marks
 from .object_names import alias_of, named_as_objects
 from .obstacles import FLOOR, build_floor, build_obstacle
 from .reader import SceneReader
-from .refusal import RefusalError
 from .robot_parts import build_robot
 
 BUILT_ALREADY = "built-already"  # the reason of a refusal without `replace`

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
 
+from ..answers import RefusalError
 from ..backend import RobotSpec
 from ..remote_api import Connection
 from .checks import OLDEST
@@ -15,7 +16,6 @@ from .doctor import UnreachableError, connect, examine
 from .findings import finding
 from .pull import pull
 from .push import push
-from .refusal import RefusalError
 from .remove import remove
 
 Request = Mapping[str, Any]
