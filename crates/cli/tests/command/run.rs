@@ -145,6 +145,31 @@ fn a_speed_is_above_zero_and_the_simulators() {
 }
 
 #[test]
+fn options_that_contradict_each_other_are_refused() {
+    let refusals: [(&[&str], &str); 9] = [
+        (&["--view"], "--view is for --engine mujoco"),
+        (
+            &["--engine", "mujoco", "--target", "vrep"],
+            "--target is for another simulator than --engine mujoco",
+        ),
+        (&["--engine", "mujoco", "--host", "127.0.0.1"], "cannot be used with"),
+        (&["--target", "vrep", "--host", "127.0.0.1", "--restart"], "--restart is for CoppeliaSim"),
+        (&["--target", "ros2", "--host", "127.0.0.1"], "--host is for simulators"),
+        (&["--target", "ros2", "--speed", "2"], "--speed is for simulators"),
+        (&["--target", "ros2", "--seed", "2"], "--seed is for simulators"),
+        (&["--target", "ros2", "--odometry"], "--odometry is for simulators"),
+        (&["--sim-time"], "--sim-time is for the target ros2"),
+    ];
+    let program = paper("table2_two_wheels");
+    for (options, reason) in refusals {
+        let done = run(&Place::new(), &[&[program.as_str()], options].concat());
+        assert_eq!(done.code, Some(2), "{options:?}: {}", done.out);
+        let said = done.err.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(said.contains(reason), "{options:?}: {}", done.err);
+    }
+}
+
+#[test]
 fn a_missing_python_is_explained() {
     let done = run(&Place::new(), &[&paper("table2_two_wheels"), "--python", "./no/python"]);
     assert_eq!(done.code, Some(2));
