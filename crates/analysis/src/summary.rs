@@ -125,7 +125,8 @@ impl Time {
         Self { seconds, calls: Vec::new() }
     }
 
-    fn add(&mut self, other: &Self, times: f64) {
+    /// Adds another row of actions, so many times.
+    pub(crate) fn add(&mut self, other: &Self, times: f64) {
         for (sum, more) in self.seconds.iter_mut().zip(other.seconds) {
             *sum += more * times;
         }

@@ -1,6 +1,6 @@
 //! Where the movements lead that a movement does.
 
-use pydslrep_syntax::ast::{Action, Movement, Name};
+use pydslrep_syntax::ast::{Action, Name};
 use rustc_hash::FxHashMap;
 
 use super::context::Context;
@@ -20,12 +20,9 @@ pub(super) enum Calls {
 }
 
 /// Each `do` of a movement, and where it leads.
-pub(super) fn of<'m>(
-    context: &Context<'_>,
-    movement: &'m Movement,
-) -> impl Iterator<Item = (&'m Name, Calls)> {
+pub(super) fn of<'a>(context: &Context<'a>) -> impl Iterator<Item = (&'a Name, Calls)> {
     let mut known: FxHashMap<EntityId, Calls> = FxHashMap::default();
-    movement.all_actions().filter_map(Action::done).filter_map(move |done| {
+    context.actions().filter_map(Action::done).filter_map(move |done| {
         let (id, _) = context.movement(done)?;
         Some((done, known.entry(id).or_insert_with(|| from(context, id)).clone()))
     })

@@ -3,7 +3,7 @@
 use std::cell::{OnceCell, RefCell};
 
 use pydslrep_kinematics::Drive;
-use pydslrep_syntax::ast::{Entity, Name, Robot, Wheel};
+use pydslrep_syntax::ast::{Action, Entity, Name, Robot, Wheel};
 use pydslrep_syntax::{EntityKind, Span, SyntaxError, Token};
 use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
@@ -34,11 +34,20 @@ pub(super) struct Context<'a> {
     pub(super) tokens: &'a [Token],
     /// Its text, once a rule has asked for a part of it.
     text: OnceCell<String>,
+    /// The actions of a movement, those in blocks too: many rules look at all of them.
+    actions: Vec<&'a Action>,
     /// The names that it uses, in the order of the text.
     pub(super) references: Vec<(EntityKind, &'a Name)>,
     /// The statements that are one problem each, whatever their syntax errors are.
     pub(super) rewrites: Vec<Rewrite>,
     reads: RefCell<Reads>,
+}
+
+fn all_actions(entity: &Entity) -> Vec<&Action> {
+    match entity {
+        Entity::Movement(movement) => movement.all_actions().collect(),
+        _ => Vec::new(),
+    }
 }
 
 // The entity itself.
@@ -53,12 +62,18 @@ impl<'a> Context<'a> {
             errors: &parse.errors,
             tokens: &parse.tokens,
             text: OnceCell::new(),
+            actions: parse.entity.as_ref().map(all_actions).unwrap_or_default(),
             references: parse.entity.as_ref().map(Entity::references).unwrap_or_default(),
             rewrites: Vec::new(),
             reads: RefCell::default(),
         };
         context.rewrites = syntax_error::rewrites(&context);
         Some(context)
+    }
+
+    /// The actions of a movement, those in blocks too, in the order of the text; none of what is not a movement.
+    pub(super) fn actions(&self) -> impl Iterator<Item = &'a Action> {
+        self.actions.iter().copied()
     }
 
     /// What was looked at beside the entity.

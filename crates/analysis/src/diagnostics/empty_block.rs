@@ -1,6 +1,6 @@
 //! `empty-block`: a `repeat`, `if` or `else` without an action.
 
-use pydslrep_syntax::ast::{Action, ActionKind, Block, Branch, Entity, If, Repeat, Rounds, SensorState};
+use pydslrep_syntax::ast::{Action, ActionKind, Block, Branch, If, Repeat, Rounds, SensorState};
 use pydslrep_syntax::{Span, TokenKind};
 
 use super::context::Context;
@@ -45,8 +45,7 @@ environment yard has { rover } robots with { trip } moves",
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
-    let Some(Entity::Movement(movement)) = context.tree else { return };
-    for action in movement.all_actions() {
+    for action in context.actions() {
         let empty = action.blocks().filter(|block| block.actions.is_empty() && is_understood(context, block));
         problems.extend(empty.map(|block| problem(context, action, block)));
     }

@@ -1,7 +1,7 @@
 //! `invalid-angle`: an angle that is none, more than a turn, or the other way round.
 
 use pydslrep_syntax::Span;
-use pydslrep_syntax::ast::{Action, ActionKind, Direction, Entity, Number, Turn};
+use pydslrep_syntax::ast::{Action, ActionKind, Direction, Number, Turn};
 
 use super::context::Context;
 use super::problem::Problem;
@@ -48,8 +48,7 @@ const FULL_TURN: f64 = 360.0;
 const FARTHEST: f64 = 100.0 * FULL_TURN;
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
-    let Some(Entity::Movement(movement)) = context.tree else { return };
-    for action in movement.all_actions() {
+    for action in context.actions() {
         let ActionKind::Turn(turn) = &action.kind else { continue };
         let Some(angle) = &turn.angle else { continue };
         match angle.value.filter(|value| value.is_finite()) {

@@ -1,6 +1,6 @@
 //! `invalid-arc`: a circle that nobody can drive on.
 
-use pydslrep_syntax::ast::{ActionKind, Circle, Entity, Turn};
+use pydslrep_syntax::ast::{ActionKind, Circle, Turn};
 
 use super::context::Context;
 use super::number_out_of_range::FARTHEST;
@@ -43,8 +43,7 @@ environment yard has { rover } robots with { trip } moves",
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
-    let Some(Entity::Movement(movement)) = context.tree else { return };
-    for action in movement.all_actions() {
+    for action in context.actions() {
         let ActionKind::Turn(turn) = &action.kind else { continue };
         match &turn.circle {
             Some(circle) => {

@@ -1,6 +1,6 @@
 //! `invalid-count`: a block is repeated once, or no whole number of times from 1 to 10000.
 
-use pydslrep_syntax::ast::{Action, ActionKind, Block, Entity, Number, Repeat, Rounds};
+use pydslrep_syntax::ast::{Action, ActionKind, Block, Number, Repeat, Rounds};
 use pydslrep_syntax::{Span, Token};
 
 use super::context::Context;
@@ -44,8 +44,7 @@ environment yard has { rover } robots with { trip } moves",
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
-    let Some(Entity::Movement(movement)) = context.tree else { return };
-    for action in movement.all_actions() {
+    for action in context.actions() {
         let ActionKind::Repeat(Repeat { rounds: Some(Rounds::Times(count)), block }) = &action.kind else {
             continue;
         };

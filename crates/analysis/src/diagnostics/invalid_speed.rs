@@ -1,7 +1,7 @@
 //! `invalid-speed`: a speed of nothing, backwards, or beyond every robot.
 
 use pydslrep_syntax::Span;
-use pydslrep_syntax::ast::{ActionKind, Entity, Number};
+use pydslrep_syntax::ast::{ActionKind, Number};
 
 use super::context::Context;
 use super::problem::Problem;
@@ -47,8 +47,7 @@ const SLOWEST: f64 = 0.001;
 const FASTEST: f64 = 10_000.0;
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
-    let Some(Entity::Movement(movement)) = context.tree else { return };
-    for action in movement.all_actions() {
+    for action in context.actions() {
         let (clause, distance) = match &action.kind {
             ActionKind::Move(step) => (&step.speed, step.distance.as_ref()),
             ActionKind::Turn(turn) => (&turn.speed, None),

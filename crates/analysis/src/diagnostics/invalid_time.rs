@@ -51,7 +51,7 @@ const LONGEST_WAIT: f64 = 86_400.0;
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(Entity::Movement(movement)) = context.tree else { return };
-    for action in movement.all_actions() {
+    for action in context.actions() {
         if let ActionKind::Wait(Wait { seconds: Some(seconds), .. }) = &action.kind {
             problems.extend(wait(context, action, seconds));
         }
@@ -78,41 +78,53 @@ fn wait(context: &Context<'_>, action: &Action, seconds: &Number) -> Option<Prob
 
 /// The outermost loops that take longer than a plan may; if only all actions together do, the longest of the loops.
 fn too_long(context: &Context<'_>, movement: &Movement) -> Vec<Problem> {
+    // To tell how long actions take is not for nothing.
+    if !context.actions().any(|action| matches!(action.kind, ActionKind::Repeat(_))) {
+        return Vec::new();
+    }
     let mut loops = Vec::new();
-    outermost_loops(&movement.actions, true, &mut loops);
+    let rest = outermost_loops(&movement.actions, true, &mut loops);
     let robot = movement.robot.as_ref().and_then(|name| context.robot(name));
     let drive = robot.and_then(|(robot, _)| context.drive(robot));
     let (false, Some(drive)) = (loops.is_empty(), drive) else { return Vec::new() };
     let mut clock = Clock { context, drive, totals: FxHashMap::default() };
-    let times = loops.iter().map(|found| clock.seconds(context.id, &Time::of_action(found.action), 0));
-    let times: Vec<f64> = times.collect();
+    let times: Vec<f64> = loops.iter().map(|found| clock.seconds(context.id, &found.time, 0)).collect();
     let timed = || loops.iter().zip(times.iter().copied());
-    let alone = timed().filter(|(_, seconds)| *seconds > LONGEST_PLAN).map(|(found, _)| problem(found));
-    let alone: Vec<Problem> = alone.collect();
-    if !alone.is_empty() || clock.seconds(context.id, &Time::of(&movement.actions), 0) <= LONGEST_PLAN {
+    let alone: Vec<Problem> =
+        timed().filter(|(_, seconds)| *seconds > LONGEST_PLAN).map(|(found, _)| problem(found)).collect();
+    let always = || timed().filter(|(found, _)| found.is_always_driven);
+    let together = clock.seconds(context.id, &rest, 0) + always().map(|(_, seconds)| seconds).sum::<f64>();
+    if !alone.is_empty() || together <= LONGEST_PLAN {
         return alone;
     }
-    let always = timed().filter(|(found, _)| found.is_always_driven);
-    let longest = always.max_by(|(_, one), (_, other)| one.total_cmp(other));
+    let longest = always().max_by(|(_, one), (_, other)| one.total_cmp(other));
     longest.map(|(found, _)| problem(found)).into_iter().collect()
 }
 
 /// A `repeat N times` that is in no other.
 struct Loop<'a> {
-    action: &'a Action,
     count: &'a Number,
+    time: Time,
     /// No condition decides about it.
     is_always_driven: bool,
 }
 
-fn outermost_loops<'a>(actions: &'a [Action], is_always_driven: bool, found: &mut Vec<Loop<'a>>) {
+/// Adds the loops; returns the time of the other actions. Each action is looked at once: it takes a while to tell its time.
+fn outermost_loops<'a>(actions: &'a [Action], is_always_driven: bool, found: &mut Vec<Loop<'a>>) -> Time {
+    let mut others = Time::default();
     for action in actions {
         if let ActionKind::Repeat(Repeat { rounds: Some(Rounds::Times(count)), .. }) = &action.kind {
-            found.push(Loop { action, count, is_always_driven });
-        } else {
-            action.blocks().for_each(|block| outermost_loops(&block.actions, false, found));
+            found.push(Loop { count, time: Time::of_action(action), is_always_driven });
+            continue;
+        }
+        if is_always_driven {
+            others.add(&Time::of_action(action), 1.0);
+        }
+        for block in action.blocks() {
+            outermost_loops(&block.actions, false, found);
         }
     }
+    others
 }
 
 fn problem(found: &Loop<'_>) -> Problem {

@@ -53,8 +53,7 @@ environment yard has { rover } robots with { trip } moves",
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
-    let Some(Entity::Movement(movement)) = context.tree else { return };
-    for condition in movement.all_actions().flat_map(Action::conditions) {
+    for condition in context.actions().flat_map(Action::conditions) {
         let Some(within) = &condition.within else { continue };
         problems.extend(problem(context, condition, within));
     }

@@ -1,6 +1,6 @@
 //! `missing-condition-word`: a condition does not say what it asks of its sensors.
 
-use pydslrep_syntax::ast::{Action, ActionKind, Condition, Entity};
+use pydslrep_syntax::ast::{Action, ActionKind, Condition};
 
 use super::context::Context;
 use super::problem::Problem;
@@ -43,8 +43,7 @@ environment yard has { rover } robots with { trip } moves",
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
-    let Some(Entity::Movement(movement)) = context.tree else { return };
-    for action in movement.all_actions().filter(|action| !may_do_without(action)) {
+    for action in context.actions().filter(|action| !may_do_without(action)) {
         let missing = action.conditions().filter(|condition| condition.state.is_none());
         let sound = missing.filter(|condition| is_understood(context, condition));
         problems.extend(sound.map(|condition| problem(context, condition)));

@@ -52,7 +52,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(Entity::Movement(movement)) = context.tree else { return };
     let Some(own) = &movement.robot else { return };
     let Some((robot, _)) = context.robot(own) else { return };
-    for done in movement.all_actions().filter_map(Action::done) {
+    for done in context.actions().filter_map(Action::done) {
         let Some((id, other)) = context.movement(done) else { continue };
         let theirs = context.robot_of(id, other).filter(|other| *other != robot);
         problems.extend(theirs.zip(other.robot).map(|(_, name)| problem(context, done, own, (id, name))));

@@ -71,7 +71,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let mut found = Vec::new();
     too_deep(&movement.actions, 0, &mut found);
     problems.extend(found.into_iter().map(|action| problem(context, movement, action)));
-    let done = calls::of(context, movement).filter(|(_, calls)| matches!(calls, Calls::TooMany));
+    let done = calls::of(context).filter(|(_, calls)| matches!(calls, Calls::TooMany));
     problems.extend(done.map(|(name, _)| {
         RULE.problem(name.span, format!("more than {LONGEST} movements do each other in a row from here"))
             .help("put what they do into fewer movements")

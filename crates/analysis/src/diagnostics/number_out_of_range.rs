@@ -45,21 +45,18 @@ environment yard has { rover } robots with { trip } moves",
 pub(super) const FARTHEST: f64 = 1_000_000.0;
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
-    match context.tree {
-        Some(Entity::Wheel(wheel)) => problems.extend(wheel.radius.as_ref().and_then(infinite)),
-        Some(Entity::Movement(movement)) => {
-            for action in movement.all_actions() {
-                let within = action.conditions().filter_map(|condition| condition.within.as_ref());
-                let within: Vec<&Within> = within.collect();
-                let lengths = within.iter().filter_map(|within| within.distance.as_ref());
-                problems.extend(action.numbers().chain(lengths).filter_map(infinite));
-                problems.extend(within.into_iter().filter_map(too_far_within));
-                if let ActionKind::Move(step) = &action.kind {
-                    problems.extend(too_far(step));
-                }
-            }
+    if let Some(Entity::Wheel(wheel)) = context.tree {
+        problems.extend(wheel.radius.as_ref().and_then(infinite));
+    }
+    for action in context.actions() {
+        let within = action.conditions().filter_map(|condition| condition.within.as_ref());
+        let within: Vec<&Within> = within.collect();
+        let lengths = within.iter().filter_map(|within| within.distance.as_ref());
+        problems.extend(action.numbers().chain(lengths).filter_map(infinite));
+        problems.extend(within.into_iter().filter_map(too_far_within));
+        if let ActionKind::Move(step) = &action.kind {
+            problems.extend(too_far(step));
         }
-        _ => {}
     }
 }
 

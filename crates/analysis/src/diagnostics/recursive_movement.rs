@@ -41,8 +41,7 @@ environment yard has { rover } robots with { trip } moves",
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
-    let Some(Entity::Movement(movement)) = context.tree else { return };
-    let done = calls::of(context, movement);
+    let done = calls::of(context);
     problems.extend(done.filter_map(|(name, calls)| match calls {
         Calls::Back(way) => Some(problem(context, name, &way)),
         Calls::TooMany | Calls::Elsewhere => None,

@@ -39,7 +39,7 @@ robot rover with port 23000 has { wheelL wheelR } wheels with sensors { front, b
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
-    for list in lists(context.tree) {
+    for list in lists(context) {
         for (first, again) in repeats(&list.names) {
             problems.push(
                 RULE.problem(again.span, format!("`{}` is in this list already", again.text))
@@ -50,17 +50,14 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     }
 }
 
-fn lists(tree: Option<&Entity>) -> Vec<&References> {
-    match tree {
-        Some(Entity::Robot(robot)) => robot.sensors.iter().collect(),
-        Some(Entity::Movement(movement)) => {
-            let conditions = movement.all_actions().flat_map(Action::conditions);
-            let mut lists: Vec<&References> = conditions.map(|condition| &condition.sensors).collect();
-            lists.sort_by_key(|list| list.span.start);
-            lists
-        }
-        _ => Vec::new(),
+fn lists<'a>(context: &Context<'a>) -> Vec<&'a References> {
+    if let Some(Entity::Robot(robot)) = context.tree {
+        return robot.sensors.iter().collect();
     }
+    let conditions = context.actions().flat_map(Action::conditions);
+    let mut lists: Vec<&References> = conditions.map(|condition| &condition.sensors).collect();
+    lists.sort_by_key(|list| list.span.start);
+    lists
 }
 
 #[cfg(test)]

@@ -54,7 +54,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     if !context.is_sound(id) {
         return;
     }
-    for action in movement.all_actions() {
+    for action in context.actions() {
         let names = action.conditions().flat_map(|condition| &condition.sensors.names);
         let carried = |name: &Name| {
             robot.sensors.iter().flat_map(|list| &list.names).any(|other| other.text == name.text)

@@ -65,7 +65,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some((id, robot)) = movement.robot.as_ref().and_then(|name| context.robot(name)) else { return };
     let Some(drive) = context.drive(id).filter(|drive| !drive.row().explores) else { return };
     let Some(name) = &robot.name else { return };
-    for action in movement.all_actions().filter(|action| action.kind == ActionKind::Slam) {
+    for action in context.actions().filter(|action| action.kind == ActionKind::Slam) {
         problems.push(
             RULE.problem(
                 action.span,

@@ -71,7 +71,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
         count => format!("only {count}"),
     };
     let carried = robot.sensors.as_ref().map_or(0, |list| list.names.len());
-    for action in movement.all_actions().filter(|action| action.kind == ActionKind::Slam) {
+    for action in context.actions().filter(|action| action.kind == ActionKind::Slam) {
         let problem = RULE
             .problem(
                 action.span,

@@ -1,6 +1,6 @@
 //! `zero-distance`: a move that goes nowhere.
 
-use pydslrep_syntax::ast::{ActionKind, Entity};
+use pydslrep_syntax::ast::ActionKind;
 
 use super::context::Context;
 use super::problem::Problem;
@@ -40,8 +40,7 @@ environment yard has { rover } robots with { trip } moves",
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
-    let Some(Entity::Movement(movement)) = context.tree else { return };
-    for action in movement.all_actions() {
+    for action in context.actions() {
         let ActionKind::Move(step) = &action.kind else { continue };
         if let Some(distance) = step.distance.as_ref().filter(|distance| distance.value == Some(0.0)) {
             problems.push(
