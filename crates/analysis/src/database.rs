@@ -42,7 +42,7 @@ pub struct FileId(u32);
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct EntityId(u32);
 
-/// What a name leads to.
+/// The result of looking a name up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Resolution {
     /// This entity; the first of several that bear the name.
@@ -84,11 +84,11 @@ struct EntityData {
     order: u64,
     parse: Arc<Parse>,
     problems: Vec<Problem>,
-    /// What they come from.
+    /// The names and entities that they come from.
     reads: Reads,
-    /// Who looked at this one's signature.
+    /// The entities whose rules read this one's signature.
     readers: SmallVec<[EntityId; 4]>,
-    /// Who looked at this one's summary.
+    /// The entities whose rules read this one's summary.
     summary_readers: SmallVec<[EntityId; 4]>,
 }
 
@@ -100,21 +100,21 @@ pub struct Database {
     entities: Vec<Option<EntityData>>,
     free: Vec<u32>,
     names: Names,
-    /// How many entities of a kind a file has, named or not.
+    /// The number of entities of a kind in a file, named or not.
     counts: FxHashMap<(FileId, EntityKind), u32>,
     /// Only of files that import anything.
     imports: FxHashMap<FileId, Imports>,
-    /// Who imports a path: the other way round.
+    /// The files that import a path: the reverse of `imports`.
     importers: FxHashMap<String, FxHashSet<FileId>>,
     /// Why what a file imports is not there, as far as this is known.
     absences: Absences,
-    /// What scripts are made for, where it is not the usual target. Kept while a file is closed.
+    /// The targets of scripts, where they are not the usual one. Kept while a file is closed.
     targets: FxHashMap<FileId, Target>,
     /// Which statements a file may have, where it is not the usual edition. Kept while a file is closed.
     editions: FxHashMap<FileId, Edition>,
     /// Scenes of environments by their names. Kept while a file is closed.
     scenes: BTreeMap<FileId, Scenes>,
-    /// How many more declarations a name of an environment has than when this was last asked for; never none.
+    /// Changes in the number of declarations of an environment's name since they were last read; no entry is 0.
     changed_environments: FxHashMap<(FileId, SmolStr), i32>,
     script_names: ScriptNames,
     /// Entities with problems.
@@ -126,11 +126,11 @@ pub struct Database {
     last_edit: EditCounts,
     /// The files whose diagnostics may have changed since they were last asked for.
     touched: FxHashSet<FileId>,
-    /// What is asked again once all files that come together are there; `None` while each is for itself.
+    /// The files to check once all that come together are open; `None` while each is checked as it comes.
     postponed: Option<Postponed>,
 }
 
-/// How much the latest edit cost.
+/// The cost of the latest edit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct EditCounts {
     /// Tokens read again, each as often as it was; also those after the edit that show where its effect ends.
@@ -177,7 +177,7 @@ impl Database {
         self.get(file).map_or("\n", File::line_ending)
     }
 
-    /// What the scripts of a file are made for.
+    /// Returns the target of a file's scripts.
     pub fn target(&self, file: FileId) -> Target {
         self.targets.get(&file).copied().unwrap_or_default()
     }
@@ -187,7 +187,7 @@ impl Database {
         self.editions.get(&file).copied().unwrap_or_default()
     }
 
-    /// How much the latest edit (or opening) cost.
+    /// Returns the cost of the latest edit (or opening).
     pub fn last_edit(&self) -> EditCounts {
         self.last_edit
     }
@@ -285,7 +285,7 @@ impl Database {
         self.data(id).map(|data| data.file)
     }
 
-    /// What a name means in a file: the first declaration in it, else in the files it imports.
+    /// Resolves a name in a file: to its first declaration in it, else to one in the files it imports.
     pub fn resolve(&self, file: FileId, kind: EntityKind, name: &SmolStr) -> Resolution {
         if let Some(first) = self.names.defined(&(file, kind, name.clone())).first() {
             return Resolution::To(*first);
@@ -316,7 +316,7 @@ impl Database {
         files.flat_map(move |file| self.names.all(file, kind))
     }
 
-    /// Whether a file sees a name of a kind.
+    /// Returns whether a file or one of its imports declares a name of a kind.
     pub(crate) fn is_in_sight(&self, file: FileId, kind: EntityKind, name: &SmolStr) -> bool {
         let mut files = std::iter::once(file).chain(self.imported_files(file));
         files.any(|file| !self.definitions(file, kind, name).is_empty())
@@ -332,7 +332,7 @@ impl Database {
         self.names.environments_but_for_case(file, name)
     }
 
-    /// What is wrong with a file, in the order of the text.
+    /// Returns the diagnostics of a file, in the order of the text.
     pub fn diagnostics(&self, file: FileId) -> Vec<Diagnostic> {
         diagnostics::in_file(self, file)
     }
@@ -346,32 +346,32 @@ impl Database {
         touched
     }
 
-    /// Whether [`Self::take_touched`] would return any file.
+    /// Returns whether [`Self::take_touched`] would return any file.
     pub fn is_touched(&self) -> bool {
         !self.touched.is_empty()
     }
 
-    /// How many entities of a file have problems.
+    /// Returns the number of entities of a file that have problems.
     pub fn count_troubled(&self, file: FileId) -> usize {
         self.troubled.get(&file).map_or(0, FxHashSet::len)
     }
 
-    /// How many entities of a kind a file has.
+    /// Returns the number of entities of a kind in a file.
     pub fn count(&self, file: FileId, kind: EntityKind) -> u32 {
         self.counts.get(&(file, kind)).copied().unwrap_or(0)
     }
 
-    /// Whether a name is in text of the file that had to be skipped.
+    /// Returns whether a name is in text of the file that had to be skipped.
     pub(crate) fn is_skipped(&self, file: FileId, name: &SmolStr) -> bool {
         self.names.is_skipped(file, name)
     }
 
-    /// Whether text of the file had to be skipped with names in it that may be declarations.
+    /// Returns whether skipped text of the file contains names that may be declarations.
     pub(crate) fn has_skipped_names(&self, file: FileId) -> bool {
         self.names.any_skipped(file)
     }
 
-    /// Whether the file ends inside a comment: whatever is in it is hidden.
+    /// Returns whether the file ends inside a comment, which may hide declarations.
     pub(crate) fn has_open_comment(&self, file: FileId) -> bool {
         let last = self.get(file).and_then(|file| file.slots.last()).and_then(|slot| self.data(slot.entity));
         last.and_then(|data| data.parse.tokens.last())

@@ -1,11 +1,11 @@
-//! What is wrong with a program, for whoever shows it: the terminal and the editor get the same object.
+//! Diagnostics of a program: the terminal and the editor show the same object.
 
 use pydslrep_syntax::Span;
 
 use crate::FileId;
 use crate::diagnostics::Rule;
 
-/// How bad it is.
+/// The severity of a diagnostic.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Severity {
     /// Unnecessary, or could be nicer.
@@ -35,15 +35,15 @@ impl Severity {
 pub struct Diagnostic {
     /// The row of the catalogue it belongs to; holds the code.
     pub rule: &'static Rule,
-    /// How bad it is.
+    /// Its severity.
     pub severity: Severity,
     /// The file it is in.
     pub file: FileId,
     /// The smallest text that has to change; empty where something is missing.
     pub span: Span,
-    /// What is wrong, in one sentence.
+    /// The problem, in one sentence.
     pub message: String,
-    /// What to do.
+    /// The remedy.
     pub help: Option<String>,
     /// Why it is so.
     pub note: Option<String>,
@@ -67,16 +67,16 @@ pub struct Related {
     pub file: FileId,
     /// Where.
     pub span: Span,
-    /// What is there.
+    /// A description of the text there.
     pub message: String,
 }
 
 /// Edits that fix a problem.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fix {
-    /// What it does, as an order: "change to `wheelL`".
+    /// The action in the imperative: "change to `wheelL`".
     pub title: String,
-    /// Whether it can be applied without asking.
+    /// True if it can be applied without asking.
     pub safe: bool,
     /// In no particular order, never overlapping.
     pub edits: Vec<Edit>,
@@ -87,8 +87,8 @@ pub struct Fix {
 pub struct Edit {
     /// The file it is in.
     pub file: FileId,
-    /// What goes.
+    /// The text that is removed.
     pub span: Span,
-    /// What comes.
+    /// The text that is inserted.
     pub text: String,
 }

@@ -6,7 +6,7 @@ pub enum Edition {
     /// All that this version has.
     #[default]
     Current,
-    /// What the article of 2020 has, and nothing else.
+    /// The language of the article of 2020, and nothing else.
     Article,
 }
 
@@ -22,7 +22,7 @@ impl Edition {
         }
     }
 
-    /// What it is, in a few words.
+    /// Returns a description in a few words.
     pub const fn summary(self) -> &'static str {
         match self {
             Self::Current => "everything that this version has",

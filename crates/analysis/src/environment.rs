@@ -10,8 +10,8 @@ pub use pydslrep_scene::{Mount, Objects, Ros2, Ros2Value, SensorKind};
 pub struct Environment {
     /// The environment's name as declared (without `^`).
     pub name: String,
-    /// What its script's file is called, without `.py`: its name, with `_env` after it where that would hide a Python
-    /// module or would not do as a file's name.
+    /// The name of its script's file without `.py`: its own, with `_env` after it where that would hide a Python module
+    /// or would not do as a file's name.
     pub script: String,
     /// Where the program says the simulator runs; `None` means this machine.
     pub host: Option<Ipv4Addr>,
@@ -20,7 +20,8 @@ pub struct Environment {
     /// The movements that are listed, each once, in order of first listing; before each of them those that it does and that
     /// are not there yet.
     pub movements: Vec<Movement>,
-    /// What runs when: groups one after the other; the members of a group (indices into `movements`) start together.
+    /// The order of the movements: groups run one after the other; the members of a group (indices into `movements`)
+    /// start together.
     pub schedule: Vec<Vec<usize>>,
     /// Where it is declared.
     pub source: Source,
@@ -35,7 +36,7 @@ pub struct ActionPlace<'a> {
     pub number: usize,
     /// The rounds of the repetitions that it is in, from 1, the outermost first.
     pub rounds: Vec<u32>,
-    /// How many rounds each of these repetitions has.
+    /// The number of rounds of each of these repetitions.
     pub counts: Vec<u32>,
     /// The statements that lead to it by `do`, the outermost first.
     pub calls: Vec<CallPlace<'a>>,
@@ -86,7 +87,7 @@ pub struct Robot {
     pub sensors: Vec<Sensor>,
     /// Where its scene file says that it and its parts are in the simulator's scene, if their objects have other names there.
     pub objects: Objects,
-    /// What is not as usual of its topics in ROS 2; empty for other targets.
+    /// The settings of its topics in ROS 2 that are not the usual ones; empty for other targets.
     pub ros2: Ros2,
     /// Where its sensors are, in their order; empty for targets that ask the simulator.
     pub mounts: Vec<Mount>,
@@ -108,7 +109,7 @@ pub struct Wheel {
 pub struct Sensor {
     /// The sensor's name.
     pub name: String,
-    /// What it measures.
+    /// The kind of its measurements.
     pub kind: SensorKind,
 }
 
@@ -119,7 +120,7 @@ pub struct Movement {
     pub name: String,
     /// Index into [`Environment::robots`].
     pub robot: usize,
-    /// What to do, in order.
+    /// The actions, in order.
     pub actions: Vec<Action>,
     /// Where it is declared.
     pub source: Source,
@@ -130,7 +131,7 @@ pub struct Movement {
 pub struct Action {
     /// Its place in its movement in the order of the text, from 1; statements in blocks count, too, and so do the blocks' own.
     pub number: usize,
-    /// What to do.
+    /// The action and its values.
     pub kind: ActionKind,
     /// The statement as the program writes it, on one line, white space folded, without comments; of one with blocks, what is
     /// before its first block.
@@ -139,7 +140,7 @@ pub struct Action {
     pub source: Source,
 }
 
-/// What an action does.
+/// The kind of an action, with its values.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ActionKind {
     /// Straight ahead along the heading.
@@ -148,7 +149,7 @@ pub enum ActionKind {
         distance: Option<f64>,
         /// Metres per second at the rim, above zero.
         speed: f64,
-        /// What ends it before that.
+        /// The condition that ends it before that.
         until: Option<Condition>,
     },
     /// In place, or on a circle.
@@ -161,7 +162,7 @@ pub enum ActionKind {
         circle: Option<Circle>,
         /// Metres per second at the rim, above zero.
         speed: f64,
-        /// What ends it before that.
+        /// The condition that ends it before that.
         until: Option<Condition>,
     },
     /// In place until none of the sensors detects anything, as the article has it.
@@ -175,28 +176,28 @@ pub enum ActionKind {
     Wait {
         /// Seconds. `None`: as long as it takes until the condition holds.
         seconds: Option<f64>,
-        /// What ends it before that.
+        /// The condition that ends it before that.
         until: Option<Condition>,
     },
     /// A block, so many times.
     Repeat {
         /// From 1 to 10 000.
         count: u32,
-        /// What is done in each round.
+        /// The actions of each round.
         body: Vec<Action>,
     },
     /// A block, until a condition holds before a round.
     RepeatUntil {
         /// When to end.
         until: Condition,
-        /// What is done in each round.
+        /// The actions of each round.
         body: Vec<Action>,
     },
     /// The block of the first branch whose condition holds.
     If {
         /// In the order of the text; the first is that of the action itself.
         branches: Vec<Branch>,
-        /// What is done if no condition holds.
+        /// The actions if no condition holds.
         otherwise: Vec<Action>,
     },
     /// Another movement of the same robot.
@@ -215,7 +216,7 @@ pub struct Branch {
     pub number: usize,
     /// When its block is done.
     pub condition: Condition,
-    /// What is done.
+    /// The actions.
     pub body: Vec<Action>,
     /// As [`Action::text`].
     pub text: String,
@@ -228,11 +229,11 @@ pub struct Branch {
 pub struct Circle {
     /// Metres, above zero: that of the robot's reference point.
     pub radius: f64,
-    /// Whether it drives backwards.
+    /// True if it drives backwards.
     pub reverse: bool,
 }
 
-/// What a condition asks of the sensors of the movement's robot.
+/// A condition on the sensors of the movement's robot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Condition {
     /// Indices into [`Robot::sensors`], in listed order, each once.
@@ -292,7 +293,7 @@ pub fn nested(actions: &[Action]) -> Vec<&Action> {
 }
 
 impl Movement {
-    /// What a number stands for: the text and the place of that statement.
+    /// Returns the text and the location of the statement with a number.
     pub fn statement(&self, number: usize) -> Option<(&str, &Source)> {
         nested(&self.actions).into_iter().find_map(|action| {
             if let ActionKind::If { branches, .. } = &action.kind {

@@ -20,10 +20,10 @@ pub(crate) struct File {
 #[derive(Debug)]
 pub(crate) struct Window {
     pub(crate) replaced: Range<usize>,
-    /// How many slots at the window's head and tail the edit did not touch; they were read for what is around
-    /// them, and can turn out as before.
+    /// The number of slots at the window's head and tail that the edit did not touch; they were read for what is around
+    /// them, and may turn out as before.
     pub(crate) untouched: (usize, usize),
-    /// How many tokens were lexed to find all this.
+    /// The number of tokens that were lexed for all this.
     pub(crate) relexed: usize,
     pub(crate) parses: Vec<(Span, Parse)>,
 }
@@ -140,7 +140,7 @@ fn shift(offset: u32, by: i64) -> u32 {
     u32::try_from(i64::from(offset) + by).unwrap_or(u32::MAX)
 }
 
-/// How many tokens some entities have together.
+/// Returns the number of tokens in some entities.
 fn token_count(parses: &[(Span, Parse)]) -> usize {
     parses.iter().map(|(_, parse)| parse.tokens.len()).sum()
 }
@@ -150,7 +150,8 @@ mod tests {
     use super::*;
     use crate::Database;
 
-    /// What is typed joins the tokens before it, `ist` and `.`, though it touches only one of them: then `lsensor s` is no slip
+    /// Typed text joins the tokens before it, `ist` and `.`, though it touches only one of them: then `lsensor s` is no
+    /// slip for a sensor, because the text after it cannot follow a sensor.
     /// for a sensor, because what follows it is none of what can follow a sensor.
     #[test]
     fn what_is_typed_changes_a_token_that_it_does_not_touch() {

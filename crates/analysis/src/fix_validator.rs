@@ -26,7 +26,7 @@ impl<'a> Offers<'a> {
         Self { database, validator: None, left: most_suggestions }
     }
 
-    /// Whether a fix is offered.
+    /// Returns whether to offer a fix.
     pub fn include(&mut self, problem: &Diagnostic, fix: &Fix) -> bool {
         if fix.safe {
             return true;
@@ -52,19 +52,19 @@ impl<'a> Offers<'a> {
 #[derive(Debug)]
 pub struct FixValidator {
     tried: Database,
-    /// How many problems were looked at so far, with [`STEPS_OF_A_CHECK`] for each entity that was checked again.
+    /// The number of problems compared so far, plus [`STEPS_OF_A_CHECK`] for each entity that was checked again.
     steps: usize,
 }
 
-/// How many problems there are in a file by code. Hints are left out: they say what could be nicer, which fixing
-/// something may well lead on to.
+/// The number of problems by file and code. Hints are left out: they point at possible improvements, which fixing
+/// something may well lead to.
 type Counts = BTreeMap<(FileId, &'static str), usize>;
 
-/// What there is in some files.
+/// The problems of some files.
 #[derive(Debug, Default)]
 struct Found {
     counts: Counts,
-    /// How many mistakes there are in a text up to the one that a problem is about; none of other problems.
+    /// The number of mistakes up to the one that a problem is about; 0 for other problems.
     understood: usize,
 }
 
@@ -74,9 +74,9 @@ impl FixValidator {
         Self { tried: database.clone(), steps: 0 }
     }
 
-    /// Whether a fix solves its problem and brings no other into the files it changes. What is said of the meaning of
-    /// text that was not understood before was hidden, and is not brought; nor is a mistake that comes to light after
-    /// it, because more of the text is understood.
+    /// Returns whether a fix solves its problem and brings no other into the files it changes. Problems in text that
+    /// was not understood before were hidden, and do not count; nor does a mistake that comes to light after it,
+    /// because more of the text is understood.
     pub fn holds(&mut self, problem: &Diagnostic, fix: &Fix) -> bool {
         let mut files: Vec<FileId> = fix.edits.iter().map(|edit| edit.file).collect();
         files.push(problem.file);

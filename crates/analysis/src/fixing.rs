@@ -12,8 +12,8 @@ use crate::{Database, Diagnostic, Edit, FileId, Fix};
 /// Fixes that bring ever new problems come to an end here. Fixes for the same place take a round each.
 const MOST_ROUNDS: usize = 1000;
 
-/// Fixing of some files. Whoever holds the database asks it for problems before each round, so that it can bring in
-/// files that the round before has made matter.
+/// The fixing of some files. The caller reads the problems before each round, so that it can open files that have
+/// become relevant since the last one.
 #[derive(Debug)]
 pub struct Fixing {
     files: Vec<FileId>,
@@ -60,12 +60,12 @@ impl Fixing {
         self.rounds < MOST_ROUNDS
     }
 
-    /// How many problems were fixed, in the files where there were any.
+    /// Returns the number of fixed problems of each file that had any.
     pub fn problems(&self) -> &BTreeMap<FileId, usize> {
         &self.problems
     }
 
-    /// What the changed files were like before.
+    /// Returns the texts of the changed files as they were before.
     pub fn before(&self) -> &BTreeMap<FileId, String> {
         &self.before
     }
@@ -96,7 +96,7 @@ fn choose<'a>(
     chosen
 }
 
-/// Whether two fixes change the same text, or text side by side, where the order would matter.
+/// Returns whether two fixes change the same text, or adjacent text, where the order would matter.
 fn touch(a: &Fix, b: &Fix) -> bool {
     let touch =
         |a: &Edit, b: &Edit| a.file == b.file && a.span.start <= b.span.end && b.span.start <= a.span.end;
@@ -147,7 +147,7 @@ fn restore(database: &mut Database, texts: &BTreeMap<FileId, String>) {
     }
 }
 
-/// Tells texts apart that were there before.
+/// Distinguishes texts that were there before.
 fn fingerprint(database: &Database, files: &[FileId]) -> u64 {
     let mut hasher = DefaultHasher::new();
     for file in files {

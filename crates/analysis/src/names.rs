@@ -1,4 +1,4 @@
-//! Who declares a name, and who uses it.
+//! The declarations and the uses of names.
 
 use std::collections::hash_map::Entry;
 
@@ -23,7 +23,7 @@ pub(crate) struct Names {
     /// be the same file on some computers.
     folded: FxHashMap<(FileId, SmolStr), Vec<SmolStr>>,
     skipped: FxHashMap<(FileId, SmolStr), u32>,
-    /// How many different names of a file are skipped; never none.
+    /// The number of different names of a file in skipped text; files without any have no entry.
     skipped_counts: FxHashMap<FileId, usize>,
 }
 
@@ -63,12 +63,12 @@ impl Names {
         self.by_kind.get(&(file, kind)).into_iter().flatten()
     }
 
-    /// Whether the name is in text that had to be skipped, and may be declared there.
+    /// Returns whether the name is in text that had to be skipped, and may be declared there.
     pub(crate) fn is_skipped(&self, file: FileId, name: &SmolStr) -> bool {
         self.skipped.contains_key(&(file, name.clone()))
     }
 
-    /// Whether any name of the file is in skipped text.
+    /// Returns whether any name of the file is in skipped text.
     pub(crate) fn any_skipped(&self, file: FileId) -> bool {
         self.skipped_counts.contains_key(&file)
     }
@@ -78,7 +78,7 @@ impl Names {
         self.folded.get(&(file, name.to_ascii_lowercase().into())).map_or(&[], Vec::as_slice)
     }
 
-    /// Adds a declaration; `order` tells where in the file an entity is.
+    /// Adds a declaration; `order` is the place of the entity in the file.
     pub(crate) fn define(&mut self, key: Key, entity: EntityId, order: impl Fn(EntityId) -> u64) {
         if self.defined(&key).is_empty() {
             self.by_kind.entry((key.0, key.1)).or_default().insert(key.2.clone());
@@ -166,7 +166,7 @@ impl Names {
     }
 }
 
-/// What the script of an environment of this name is called where small and capital letters are the same.
+/// Returns the file and name of an environment in lower case, as for script names where case is ignored.
 fn folded(key: &Key) -> (FileId, SmolStr) {
     (key.0, key.2.to_ascii_lowercase().into())
 }

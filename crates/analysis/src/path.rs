@@ -23,7 +23,8 @@ pub fn join(base: &str, relative: &str) -> String {
     }
 }
 
-/// How the file at `base` has to write the path `target`, so that [`join`] leads there; `None` where it cannot.
+/// Returns the path by which the file at `base` imports `target`, so that [`join`] leads there; `None` if there is
+/// none.
 pub fn relative(base: &str, target: &str) -> Option<String> {
     let folders = |path: &str| path.split('/').map(str::to_owned).collect::<Vec<_>>();
     let (mut from, to) = (folders(base), folders(target));

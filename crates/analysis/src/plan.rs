@@ -7,10 +7,11 @@ use kinematics::StepKind;
 
 use crate::environment::{Action, ActionKind, Circle, Condition, Environment, Movement, Robot};
 
-/// How far a robot drives until a condition holds, metres: a `move` fails after that, and loops hardly go farther.
+/// The distance that a robot drives until a condition holds, metres: a `move` fails after that, and loops hardly go
+/// farther.
 const OPEN_ENDED_EXTENT: f64 = 100.0;
 
-/// How far from its start a robot explores, metres, unless the user says otherwise.
+/// The distance from its start that a robot explores, metres, unless the user says otherwise.
 const SLAM_EXTENT: f64 = 20.0;
 
 /// The environment's robots on an empty floor.
@@ -84,7 +85,7 @@ pub fn reach(
     Ok([kinematics::Pose::new(low.0, low.1, 0.0), kinematics::Pose::new(high.0, high.1, 0.0)])
 }
 
-/// How far a robot drives at most, metres.
+/// Returns the longest distance that a robot may drive, metres.
 fn way(environment: &Environment, robot: usize) -> f64 {
     let mut ways: Vec<f64> = Vec::with_capacity(environment.movements.len());
     for movement in &environment.movements {
@@ -136,7 +137,8 @@ pub fn plan_movement(
     Ok(kinematics::plan_steps(&model, kinematics::Pose::default(), &steps, &done))
 }
 
-/// What the last of some movements comes to, with a robot of default size; the others are as for [`plan_movement`].
+/// Returns the summary of the last of some movements, with a robot of default size; the others are as for
+/// [`plan_movement`].
 ///
 /// # Errors
 /// When the robot cannot drive, because a radius is not above zero.
@@ -147,7 +149,7 @@ pub fn summary_of_movement(
     Ok(summaries(&robot(driven).model()?, movements).pop().unwrap_or_default())
 }
 
-/// What movements come to, each of which may do those before it.
+/// Returns the summaries of movements, each of which may do those before it.
 fn summaries(model: &kinematics::Model, movements: &[Movement]) -> Vec<kinematics::Summary> {
     let mut summaries: Vec<kinematics::Summary> = Vec::with_capacity(movements.len());
     for movement in movements {
@@ -162,7 +164,7 @@ fn summaries(model: &kinematics::Model, movements: &[Movement]) -> Vec<kinematic
 #[derive(Debug)]
 pub struct Driver {
     model: kinematics::Model,
-    /// What the movements come to that it may do.
+    /// The summaries of the movements that it may do.
     done: Vec<kinematics::Summary>,
 }
 
@@ -182,7 +184,7 @@ impl Driver {
         self
     }
 
-    /// How it drives.
+    /// Returns its drive model.
     pub fn model(&self) -> &kinematics::Model {
         &self.model
     }

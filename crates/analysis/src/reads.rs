@@ -1,4 +1,4 @@
-//! What the rules looked at while they checked an entity.
+//! The names and entities that rules read while they checked an entity.
 
 use pydslrep_syntax::EntityKind;
 use smallvec::SmallVec;
@@ -38,7 +38,7 @@ impl Reads {
         self.kinds = self.kinds.with(kind);
     }
 
-    /// The same, each once and in an order that does not tell which rule came first.
+    /// Returns the same, each once and in an order that does not depend on the order of the rules.
     pub(crate) fn settled(mut self) -> Self {
         self.names.sort_unstable();
         self.names.dedup();
@@ -85,7 +85,7 @@ impl Kinds {
         self.0 == 0
     }
 
-    /// Whether the two have a kind in common.
+    /// Returns whether the two have a kind in common.
     pub(crate) fn meets(self, other: Self) -> bool {
         self.0 & other.0 != 0
     }

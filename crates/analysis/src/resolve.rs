@@ -48,7 +48,7 @@ pub struct Fingerprint {
 }
 
 impl PartialEq for Fingerprint {
-    /// What was read again counts as changed.
+    /// A part that was read again counts as changed.
     fn eq(&self, other: &Self) -> bool {
         self.scene == other.scene
             && self.parts.len() == other.parts.len()
@@ -108,7 +108,7 @@ impl Database {
             .ok_or_else(|| Blocked { environment: name, errors: Arc::clone(all_errors.get_or_init(hidden)) })
     }
 
-    /// What an environment is made of now, to be compared with what it is made of later; `None` where it has errors.
+    /// Returns the fingerprint of an environment, to be compared with a later one; `None` where it has errors.
     pub fn fingerprint(&self, id: EntityId) -> Option<Fingerprint> {
         let reached = Parts { database: self, file: self.file_of(id) }.reached_from(id);
         let problems = reached.iter().flat_map(|id| self.problems(*id));
@@ -183,7 +183,7 @@ impl Database {
         parts.robot(parts.resolve(movement, EntityKind::Robot, tree.robot.as_ref()?)?)
     }
 
-    /// What is known of the statements of a movement, driven by this robot, while it is being written.
+    /// Returns the statements of a movement known so far, driven by this robot, while it is being written.
     pub fn known_statements(&self, movement: EntityId, robot: Option<&Robot>) -> Option<KnownStatements<'_>> {
         let parts = Parts { database: self, file: self.file_of(movement) };
         let Entity::Movement(tree) = self.tree(movement)? else { return None };
@@ -340,7 +340,8 @@ impl<'a> Parts<'a> {
         Some(order)
     }
 
-    /// What a movement does of what nothing is missing or broken in: each after those that it does itself.
+    /// Returns the movements that a movement does, of those that are complete and sound: each after those that it does
+    /// itself.
     fn known_done(&self, movement: EntityId, tree: &ast::Movement, robot: &Robot) -> Vec<EntityId> {
         let names = tree.all_actions().filter_map(ast::Action::done);
         let named: Vec<EntityId> =
@@ -477,8 +478,8 @@ pub struct KnownStatements<'a> {
 }
 
 impl KnownStatements<'_> {
-    /// What an action of the movement does; `None` where it is broken, or does what is. The movements that it does are
-    /// indices into [`Self::done`].
+    /// Returns the action's kind; `None` where it, or a movement that it does, is broken. The movements that it does
+    /// are indices into [`Self::done`].
     pub fn kind(&self, action: &ast::Action) -> Option<ActionKind> {
         let Self { parts, sensors, places, .. } = self;
         let entity = self.entity;
@@ -498,7 +499,7 @@ struct Statements<'p, 'a> {
     sensors: &'p [Sensor],
     /// Where the movements that it may do are.
     places: &'p FxHashMap<EntityId, usize>,
-    /// How many statements there were.
+    /// The number of statements so far.
     number: usize,
 }
 
@@ -567,22 +568,22 @@ impl Statements<'_, '_> {
     }
 }
 
-/// What of a statement is before its block.
+/// Returns the span of a statement before its block.
 fn head(statement: Span, block: Option<&ast::Block>) -> Span {
     Span::new(statement.start, block.map_or(statement.end, |block| block.span.start))
 }
 
-/// How often a block is repeated.
+/// Returns the number of rounds of a block.
 fn count(number: &ast::Number) -> Option<u32> {
     let value = number.value.filter(|value| value.fract() == 0.0 && COUNTS.contains(value))?;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it is whole and in range")]
     Some(value as u32)
 }
 
-/// How often a block may be repeated.
+/// The allowed numbers of rounds of a block.
 pub const COUNTS: std::ops::RangeInclusive<f64> = 1.0..=10_000.0;
 
-/// What a statement without blocks does that is no call.
+/// Returns the kind of a statement that has no blocks and does no movement.
 fn simple_kind(statement: &Statement, sensors: &[Sensor]) -> Option<ActionKind> {
     let until = |clause: &Option<ast::Until>| match clause {
         Some(clause) => condition(&clause.condition, sensors).map(Some),
@@ -660,7 +661,7 @@ fn speed(clause: Option<&ast::SpeedClause>) -> Option<f64> {
     }
 }
 
-/// How far a `turn` without an angle turns, in degrees.
+/// The angle of a `turn` without one, in degrees.
 pub const DEFAULT_ANGLE: f64 = 90.0;
 
 /// Metres. Centimetres are divided, not multiplied, so that `400 centimeters` is exactly 4.

@@ -1,4 +1,4 @@
-//! What the scripts of a program's environments are called.
+//! The names of the scripts of a program's environments.
 
 use std::sync::LazyLock;
 
@@ -37,7 +37,7 @@ const CLIENT_MODULES: [&str; 20] = [
 /// Modules that Python imports by itself when it starts, if it finds them.
 const START_MODULES: [&str; 2] = ["sitecustomize", "usercustomize"];
 
-/// What a script is called.
+/// The name of a script.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct ScriptName {
     /// The file's name without `.py`: the environment's name, with `_env` after it where that would not do.
@@ -57,7 +57,7 @@ pub(crate) enum Obstacle {
     StartModule,
     /// Windows has no files of that name.
     ReservedOnWindows,
-    /// Another environment's name, at this index, differs by case only, as some file systems do not tell apart.
+    /// Another environment's name, at this index, differs by case only, which some file systems ignore.
     SameButForCase(usize),
 }
 

@@ -1,19 +1,19 @@
-//! What an entity shows to others.
+//! Signatures of entities: what others may read of them.
 
 use pydslrep_syntax::ast::{Entity, Environment, Name, Robot, Sensor, Wheel};
 use pydslrep_syntax::{Parse, Span};
 
-/// What others may conclude something from. An edit that leaves it as it was invalidates nobody else's problems; so a rule
-/// sees no more than this of another entity.
+/// The part of an entity that others may rely on. An edit that leaves it as it was invalidates nobody else's problems;
+/// so a rule sees no more than this of another entity.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Signature<'a> {
-    /// What is between the braces of a movement is its own.
+    /// A movement without its actions, which are its own.
     Movement(MovementSignature<'a>),
     /// Positions count, because others point at them.
     Whole(&'a Parse),
 }
 
-/// What a movement shows to others.
+/// The part of a movement that others may rely on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct MovementSignature<'a> {
     pub(crate) parallel: Option<Span>,
@@ -97,8 +97,8 @@ impl<'a> Signature<'a> {
         }
     }
 
-    /// Whether it was read without a syntax error, so that something may be concluded from what it lacks. Of a movement
-    /// nobody else can tell.
+    /// Returns whether it was read without a syntax error, so that something may be concluded from what it lacks.
+    /// Always false for a movement, whose errors others cannot see.
     pub(crate) fn is_sound(self) -> bool {
         matches!(self, Self::Whole(parse) if parse.errors.is_empty())
     }

@@ -80,12 +80,12 @@ impl Snapshot {
         self
     }
 
-    /// Whether work on it should stop.
+    /// Returns whether work on it should stop.
     pub fn is_cancelled(&self) -> bool {
         self.cancellation.iter().any(CancellationToken::is_cancelled)
     }
 
-    /// How many entities at the start and at the end read as they did before, in the same places of the order.
+    /// Returns the number of entities at the start and at the end that read as they did before, in the same order.
     pub fn unchanged_ends(&self, before: &Self) -> (usize, usize) {
         let same = |(a, b): &(&Kept, &Kept)| Arc::ptr_eq(&a.parse, &b.parse);
         let head = self.slots.iter().zip(&before.slots).take_while(same).count();
@@ -93,12 +93,12 @@ impl Snapshot {
         (head, ours.zip(theirs).take_while(same).count())
     }
 
-    /// How many entities it has.
+    /// Returns the number of its entities.
     pub fn len(&self) -> usize {
         self.slots.len()
     }
 
-    /// Whether it has no entities, which only a part of a file can be.
+    /// Returns whether it has no entities, which only a part of a file can be.
     pub fn is_empty(&self) -> bool {
         self.slots.is_empty()
     }

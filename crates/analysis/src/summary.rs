@@ -1,4 +1,4 @@
-//! What a movement shows to those that do it: which movements it does itself, and how long it takes.
+//! Summaries of movements: the movements that they do themselves, and the time they take.
 
 use std::sync::LazyLock;
 
@@ -12,12 +12,12 @@ use crate::resolve::DEFAULT_ANGLE;
 /// Robots of default size, in the order of [`Drive::ALL`]. Each action asks them, with each key.
 static MODELS: LazyLock<[Option<Model>; Drive::ALL.len()]> = LazyLock::new(|| Drive::ALL.map(default_model));
 
-/// What a movement adds up to. As long as it stays what it was, nobody who does the movement is looked at again.
+/// The summary of a movement. An edit that leaves it as it was causes no new check of those that do the movement.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Summary {
     /// The movements that it does, each once, in the order of the text.
     pub(crate) does: Vec<SmolStr>,
-    /// How long it takes at least.
+    /// The least time it takes.
     pub(crate) time: Time,
 }
 

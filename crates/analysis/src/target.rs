@@ -1,6 +1,6 @@
-//! What scripts are made for.
+//! The targets of scripts.
 
-/// What moves the robots: a simulator, whose remote API a script speaks, or drivers of ROS 2.
+/// The system that moves the robots: a simulator, whose remote API a script speaks, or drivers of ROS 2.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Target {
     /// `CoppeliaSim` 4.6 or later with its `ZeroMQ` remote API: one connection serves all robots.
@@ -25,7 +25,7 @@ impl Target {
         }
     }
 
-    /// What it is, in a few words.
+    /// Returns a description in a few words.
     pub const fn summary(self) -> &'static str {
         match self {
             Self::CoppeliaSim => "CoppeliaSim 4.6 or later, by its ZeroMQ remote API",

@@ -9,14 +9,14 @@ use pydslrep_analysis::{Absence, Database, Edition, FileId, Target};
 use pydslrep_naive::{Finding, Recipe, Source, Verdict};
 use pydslrep_syntax::{format, parse};
 
-/// What is said of a program, and where.
+/// Returns the diagnostics of a program, and their places.
 fn diagnostics(text: &str) -> BTreeSet<Finding> {
     let mut database = Database::new();
     let file = database.open("random.pyr", text);
     findings(&database, file)
 }
 
-/// What is said of a program where the edition is the article's.
+/// Returns the diagnostics of a program where the edition is the article's.
 fn diagnostics_as_article(text: &str) -> BTreeSet<Finding> {
     let mut database = Database::new();
     let file = database.open("random.pyr", text);
@@ -33,7 +33,7 @@ fn findings(database: &Database, file: FileId) -> BTreeSet<Finding> {
     database.diagnostics(file).iter().map(finding).collect()
 }
 
-/// What is said of each file of a project.
+/// Returns the diagnostics of each file of a project.
 fn diagnostics_of_project(sources: &[Source]) -> Vec<BTreeSet<Finding>> {
     let mut database = Database::new();
     let files: Vec<FileId> = sources.iter().map(|source| database.open(source.path, &source.text)).collect();
@@ -77,7 +77,7 @@ fn check(text: &str) -> Result<(), TestCaseError> {
     compare(&diagnostics_as_article(text), pydslrep_naive::check_as_article(text))
 }
 
-/// What is said must be what the naive checker finds.
+/// Checks that the diagnostics are those of the naive checker.
 fn compare(said: &BTreeSet<Finding>, verdict: Verdict) -> Result<(), TestCaseError> {
     let expected: BTreeSet<Finding> = verdict.findings.into_iter().collect();
     let excused: BTreeSet<Finding> = verdict.excused.into_iter().collect();

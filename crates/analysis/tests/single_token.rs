@@ -10,12 +10,12 @@ use pydslrep_analysis::{Database, Diagnostic};
 use pydslrep_naive::{Finding, declarations};
 use pydslrep_syntax::{KEYWORDS, Span, Token, lex};
 
-/// What one slip makes of a program, and where the slip is.
+/// A program with one slip, and the place of the slip.
 struct Slip {
     text: String,
-    /// What was replaced, in the program as it was.
+    /// The replaced text, in the original program.
     was: Range<usize>,
-    /// What is there now.
+    /// The text that replaces it.
     at: Range<usize>,
     what: String,
 }
@@ -112,9 +112,9 @@ impl Slip {
         start..end
     }
 
-    /// What may truly be said of the other entities: what was true of them before, as an entity with a syntax error
-    /// declares its name all the same; where the slip took that very name, what is true without the entity; and where
-    /// it took the name of another entity, that nothing uses that one.
+    /// Returns the diagnostics of other entities that may follow: those from before, as an entity with a syntax error
+    /// still declares its name; where the slip took that very name, those without the entity; and where it took the
+    /// name of another entity, that nothing uses that one.
     fn true_consequences(&self, before: &str) -> BTreeSet<Finding> {
         let mut programs = vec![before.to_owned()];
         for entity in declarations(before).unwrap() {
@@ -165,7 +165,7 @@ fn check_broken(slip: &Slip, before: &str, said: &[Finding], syntax: &[Finding])
     }
 }
 
-/// How many syntax errors are reported.
+/// Returns the number of syntax errors reported.
 fn check(slip: &Slip, program: &str, before: &str, complaints: &mut Vec<String>) -> u32 {
     let mut database = Database::new();
     let file = database.open("slip.pyr", &slip.text);

@@ -4,7 +4,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::FileId;
 
-/// Why a file that is imported cannot be used. The database sees no disk: whoever reads files for it says so.
+/// Why a file that is imported cannot be used. The database sees no disk: the caller that reads files for it says so.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Absence {
     /// There is no such file.
@@ -15,7 +15,7 @@ pub enum Absence {
     Unreadable(String),
 }
 
-/// What is known of files that are not there.
+/// The known reasons why imported files are absent.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Absences {
     reasons: FxHashMap<FileId, FxHashMap<String, Absence>>,

@@ -1,4 +1,4 @@
-//! How the database changes: what an edit replaces, and whose problems it invalidates.
+//! Changes of the database: the entities that an edit replaces, and those whose problems it invalidates.
 
 use std::hash::Hash;
 use std::ops::Range;
@@ -146,13 +146,13 @@ impl Database {
             self.validate_with_importers(&path);
             self.validate_imported(file, &before);
         } else if had_environments != has_environments {
-            // Whether anything is unused is only asked where something could be used.
+            // Unused declarations are only looked for where something could be used.
             self.validate_file(file);
         }
         if let Some(imports) = self.imports.get(&file)
             && self.which_are_imports(&ids) != imports_before
         {
-            // Whether an import comes too late, and where it belongs, depends on what is before it.
+            // An import that comes too late, and the place where it belongs, depend on the text before it.
             invalidated.entities.extend(&imports.entities);
         }
         invalidated.entities.extend(ids);
@@ -374,8 +374,8 @@ impl Database {
         }
     }
 
-    /// Who must be checked again when the meaning of a name changes: all who declare it, use it or looked it up, here and
-    /// in the files that import this one.
+    /// Returns the entities to check again when the meaning of a name changes: all that declare it, use it or looked it
+    /// up, here and in the files that import this one.
     fn dependents(&self, key: &Key) -> Vec<EntityId> {
         let (file, kind, name) = key;
         let mut ids: Vec<EntityId> = self.names.mentions(key).collect();
@@ -417,7 +417,7 @@ fn list(lists: &mut FxHashMap<FileId, FxHashSet<EntityId>>, file: FileId, id: En
     }
 }
 
-/// What an edit invalidates.
+/// The entities and names that an edit invalidates.
 #[derive(Debug, Default)]
 struct Invalidated {
     entities: FxHashSet<EntityId>,
@@ -437,7 +437,7 @@ fn used_keys(file: FileId, parse: &Parse) -> impl Iterator<Item = Key> {
     references.into_iter().map(move |(kind, name)| (file, kind, name.text.clone()))
 }
 
-/// What one of two lists has and the other has not, or less often.
+/// Returns the items that one of two lists has and the other has not, or less often.
 fn only_in_one<T: Eq + Hash>(
     before: impl Iterator<Item = T>,
     after: impl Iterator<Item = T>,
@@ -457,7 +457,7 @@ fn visible_keys(file: FileId, parse: &Parse) -> impl Iterator<Item = Key> {
     hidden_keys(file, parse.skipped_names.iter()).chain(defined_key(file, parse))
 }
 
-/// What names in skipped text may declare.
+/// Returns the keys that names in skipped text may declare.
 fn hidden_keys<'a>(file: FileId, names: impl Iterator<Item = &'a SmolStr>) -> impl Iterator<Item = Key> {
     names.flat_map(move |name| EntityKind::ALL.map(|kind| (file, kind, name.clone())))
 }

@@ -1,4 +1,4 @@
-//! What edits cost, counted: as much in a long file as in a short one.
+//! Tests of the cost of edits, in counts: the same in a long file as in a short one.
 
 use pydslrep_syntax::Span;
 
@@ -19,8 +19,8 @@ fn cell(number: usize) -> String {
     )
 }
 
-/// What it costs to replace `old`, which is in a file of many cells once, by `new`; the same in a file a hundred times as
-/// long.
+/// Returns the cost of replacing `old`, which is in a file of many cells once, by `new`; checks that it is the same in
+/// a file a hundred times as long.
 fn cost(old: &str, new: &str) -> EditCounts {
     let [short, long] = [10, 1000].map(|cells| {
         let mut database = Database::new();
@@ -34,7 +34,7 @@ fn cost(old: &str, new: &str) -> EditCounts {
 fn replace(database: &mut Database, file: crate::FileId, old: &str, new: &str) -> EditCounts {
     let text = database.text(file).unwrap().to_string();
     assert_eq!(text.matches(old).count(), 1, "{old}");
-    // What both begin and end with is not typed again.
+    // Their common beginning and end are not typed again.
     let head = old.bytes().zip(new.bytes()).take_while(|(a, b)| a == b).count();
     let (gone, come) = (&old[head..], &new[head..]);
     let tail = gone.bytes().rev().zip(come.bytes().rev()).take_while(|(a, b)| a == b).count();
@@ -114,7 +114,7 @@ fn an_edit_in_an_imported_file_asks_who_uses_the_name() {
     }
 }
 
-/// An import that comes too late goes to the top: an edit there makes it another place, though it keeps its words.
+/// An import that comes too late goes to the top: an edit there changes the place, though not the text, of the import.
 #[test]
 fn files_that_come_together_are_asked_once() {
     let open_chain = |database: &mut Database, length: usize| {

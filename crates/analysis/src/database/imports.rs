@@ -1,4 +1,4 @@
-//! What files import.
+//! The imports of files.
 
 use pydslrep_syntax::ast::Entity;
 use rustc_hash::FxHashSet;
@@ -25,14 +25,14 @@ pub(super) struct Postponed {
 }
 
 impl Database {
-    /// Makes changes to files that belong together, such as a program and all that it imports: whose problems they
-    /// invalidate is asked again once, at the end, however long the chains of imports are. Until then the answers about
-    /// problems are those from before.
+    /// Starts a batch of changes to files that belong together, such as a program and all that it imports. The entities
+    /// that they invalidate are checked once, in [`Self::end_together`], however long the chains of imports are; until
+    /// then, problems are those from before the batch.
     pub fn begin_together(&mut self) {
         self.postponed.get_or_insert_default();
     }
 
-    /// Whether [`Self::begin_together`] was called and [`Self::end_together`] is still to come.
+    /// Returns whether a batch begun by [`Self::begin_together`] is still open.
     pub fn is_together(&self) -> bool {
         self.postponed.is_some()
     }
@@ -81,7 +81,7 @@ impl Database {
         }
     }
 
-    /// Whether anything that a file imports is not there.
+    /// Returns whether any file that a file imports is absent.
     pub(super) fn lacks_imports(&self, file: FileId) -> bool {
         self.imports.get(&file).is_some_and(|imports| {
             let is_absent = |path: &String| self.file(path).is_none() || self.absence(file, path).is_some();
@@ -97,7 +97,7 @@ impl Database {
         }
     }
 
-    /// How an import in one file has to name another one; `None` where no path leads there.
+    /// Returns the path by which one file imports another; `None` where no path leads there.
     pub fn path_for_import(&self, importer: FileId, imported: FileId) -> Option<String> {
         path::relative(self.path(importer), self.path(imported))
     }
@@ -109,14 +109,14 @@ impl Database {
         files
     }
 
-    /// Whether another open file imports this one, and may use what nothing in it does.
+    /// Returns whether another open file imports this one, and may use what is unused in it.
     pub(crate) fn is_imported(&self, file: FileId) -> bool {
         let path = self.path(file);
         let may = |importer: FileId| self.absence(importer, path) != Some(&Absence::Outside);
         self.importers(path).any(may)
     }
 
-    /// Whether an import is after an entity of another kind.
+    /// Returns whether an import is after an entity of another kind.
     pub(crate) fn is_late_import(&self, id: EntityId) -> bool {
         let Some(data) = self.data(id) else { return false };
         let Some(open) = self.get(data.file) else { return false };

@@ -1,4 +1,4 @@
-//! Who looked at what: kept in both directions, so that a change finds those it invalidates.
+//! The reads of rules, kept in both directions so that a change finds those it invalidates.
 
 use smallvec::SmallVec;
 

@@ -77,8 +77,8 @@ impl Database {
             .collect()
     }
 
-    /// Whether a name is in text of the file that was not understood, where it may be a declaration or a use: in
-    /// skipped text, or in a comment that is never closed.
+    /// Returns whether a name is in text of the file that was not understood, where it may be a declaration or a use:
+    /// in skipped text, or in a comment that is never closed.
     pub fn may_hide(&self, file: FileId, name: &SmolStr) -> bool {
         let word = |c: char| c.is_alphanumeric() || c == '_';
         self.is_skipped(file, name)

@@ -1,4 +1,4 @@
-//! Scenes of environments: files beside programs, given by whoever can read them.
+//! Scenes of environments: files beside programs, supplied by the caller that can read them.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -23,13 +23,13 @@ pub(super) type Scenes = BTreeMap<SmolStr, SceneFile>;
 #[derive(Debug, Clone)]
 pub(super) struct SceneFile {
     text: Arc<str>,
-    /// What the environment was made of when its files were last touched for its sake.
+    /// The fingerprint of the environment when its files were last touched because of it.
     touched_with: Option<Fingerprint>,
-    /// How the environment drives in it. Clones share it: it says what it holds for.
+    /// The planned run of the environment in the scene. Clones share it; its fingerprint says when it is outdated.
     run: Arc<Mutex<Option<Known>>>,
 }
 
-/// How an environment drives, with what it is then made of.
+/// The fingerprint of an environment, and its planned run.
 type Known = (Fingerprint, Option<Arc<PlannedRun>>);
 
 impl Database {
@@ -94,8 +94,8 @@ impl Database {
         Environment { robots: placed.collect(), ..environment }
     }
 
-    /// What is wrong with the text of a scene file, in the order of the text. Without an environment, or where a robot of
-    /// it is broken, names can be any.
+    /// Returns the problems of a scene file, in the order of the text. Without an environment, or where a robot of it
+    /// is broken, any name is allowed.
     pub fn scene_problems(&self, environment: Option<EntityId>, text: &str) -> Vec<Problem> {
         match environment.and_then(|id| self.floor(id)) {
             Some(floor) => pydslrep_scene::read(text, floor).1,
@@ -119,8 +119,8 @@ impl Database {
         self.scenes.get(&self.file_of(id)?)?.get(name).map(|scene| &scene.text)
     }
 
-    /// How the environments with a scene drive whose actions may be in a file; computed again only where one is made of
-    /// something else than before.
+    /// Returns the planned runs of the environments with a scene whose actions may be in a file. A run is computed
+    /// again only where the environment's fingerprint changed.
     pub(crate) fn planned_runs(&self, file: FileId) -> Vec<Arc<PlannedRun>> {
         let mut planned_runs = Vec::new();
         for (home, scenes) in &self.scenes {
@@ -147,7 +147,8 @@ impl Database {
         run
     }
 
-    /// What a path meets depends on everything its environment sees.
+    /// Touches the files of environments that changed: the collisions on a path depend on everything the environment
+    /// sees.
     pub(super) fn touch_in_scenes(&mut self) {
         let mut concerned: Vec<FileId> = Vec::new();
         let mut looked_at = Vec::new();
@@ -183,7 +184,7 @@ impl Database {
 }
 
 impl SceneFile {
-    /// Whether it is known that there is something to say of the run.
+    /// Returns whether the run is known to have problems.
     fn has_problems(&self) -> bool {
         let known = self.run.lock().unwrap_or_else(PoisonError::into_inner);
         known.as_ref().and_then(|(_, run)| run.as_ref()).is_some_and(|run| run.has_problems())
@@ -262,7 +263,7 @@ mod tests {
         assert!(!run(&database).has_problems());
     }
 
-    /// What is typed elsewhere in the program does not make the imported files outdated.
+    /// Text typed elsewhere in the program does not make the imported files outdated.
     #[test]
     fn files_are_touched_where_what_is_met_may_change() {
         let mut database = Database::new();

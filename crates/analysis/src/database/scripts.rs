@@ -1,4 +1,4 @@
-//! What the scripts of environments are called, kept until an environment of the file comes, goes or is renamed.
+//! The names of environments' scripts, kept until an environment of the file comes, goes or is renamed.
 
 use std::sync::{Arc, OnceLock};
 
@@ -30,8 +30,8 @@ impl ScriptNames {
 }
 
 impl Database {
-    /// What the script of an environment is called, and the environment whose name leaves no room for its own, if that is
-    /// why. Most names are free, which is known without looking at the others.
+    /// Returns the name of an environment's script, and the environment that already has the usual one, if any. Most
+    /// names are free, which is known without looking at the others.
     pub(crate) fn script_name(&self, file: FileId, name: &SmolStr) -> Option<(ScriptName, Option<EntityId>)> {
         if obstacle(name).is_none() && self.environments_but_for_case(file, name).len() < 2 {
             return Some((ScriptName { stem: name.to_string(), obstacle: None }, None));

@@ -6,7 +6,7 @@ use rustc_hash::FxHashMap;
 use super::context::Context;
 use crate::EntityId;
 
-/// How many movements may do each other in a row: far more than do in any program, and fewer than Python can call.
+/// The longest chain of movements that do each other: far more than in any program, and fewer than Python can call.
 pub(super) const LONGEST: usize = 200;
 
 #[derive(Debug, Clone)]

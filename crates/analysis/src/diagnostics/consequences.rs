@@ -12,7 +12,7 @@ use crate::{Database, EntityId, FileId};
 pub(super) struct Consequences<'a> {
     /// Text that may declare or use anything is hidden in a comment.
     hidden: bool,
-    /// What references are slips for: it is no wonder that nothing uses it.
+    /// The names that misspelt references were meant to be: they are not reported as unused.
     meant: FxHashSet<&'a (EntityKind, SmolStr)>,
     /// The kinds of entities that did not read well: they may use anything of the kinds below them.
     broken: Vec<EntityKind>,
@@ -90,7 +90,7 @@ impl<'a> Consequences<'a> {
     }
 }
 
-/// Whether declarations may be hidden in a comment that never ends.
+/// Returns whether declarations may be hidden in a comment that never ends.
 fn has_hidden_text(database: &Database, file: FileId) -> bool {
     std::iter::once(file).chain(database.imported_files(file)).any(|file| database.has_open_comment(file))
 }

@@ -1,4 +1,4 @@
-//! What a rule sees.
+//! The context of a rule: the entity it checks, and what it may read of others.
 
 use std::cell::{OnceCell, RefCell};
 
@@ -76,12 +76,12 @@ impl<'a> Context<'a> {
         self.actions.iter().copied()
     }
 
-    /// What was looked at beside the entity.
+    /// Returns the names and entities that were read beside the entity.
     pub(super) fn into_reads(self) -> Reads {
         self.reads.into_inner().settled()
     }
 
-    /// Whether a span is in a statement that is one problem as a whole.
+    /// Returns whether a span is in a statement that is reported as a whole.
     pub(super) fn is_rewritten(&self, span: Span) -> bool {
         self.rewrites.iter().any(|rewrite| rewrite.covers(span))
     }
@@ -107,7 +107,7 @@ impl<'a> Context<'a> {
         short
     }
 
-    /// How long its text is.
+    /// Returns the length of its text, in bytes.
     pub(super) fn len(&self) -> Option<u32> {
         self.database.entity(self.id).map(|entity| entity.span.len())
     }
@@ -120,7 +120,7 @@ impl<'a> Context<'a> {
 
 // Its file.
 impl Context<'_> {
-    /// What scripts of the file are made for.
+    /// Returns the target of the file's scripts.
     pub(super) fn target(&self) -> Target {
         self.database.target(self.file)
     }
@@ -130,12 +130,12 @@ impl Context<'_> {
         self.database.edition(self.file)
     }
 
-    /// Whether the file has environments.
+    /// Returns whether the file has environments.
     pub(super) fn has_environments(&self) -> bool {
         self.database.count(self.file, EntityKind::Environment) > 0
     }
 
-    /// Whether another file imports this one.
+    /// Returns whether another file imports this one.
     pub(super) fn is_imported(&self) -> bool {
         self.database.is_imported(self.file)
     }
@@ -157,13 +157,13 @@ impl Context<'_> {
 
 // Names.
 impl<'a> Context<'a> {
-    /// What a name means in this file.
+    /// Resolves a name in this file.
     pub(super) fn resolve(&self, kind: EntityKind, name: &Name) -> Resolution {
         self.note_name(self.file, kind, name);
         self.database.resolve(self.file, kind, &name.text)
     }
 
-    /// What a name of another entity means in the file of that one.
+    /// Resolves a name of another entity in the file of that entity.
     fn resolve_in(&self, id: EntityId, kind: EntityKind, name: &Name) -> Option<EntityId> {
         let file = self.database.file_of(id)?;
         self.note_name(file, kind, name);
@@ -191,13 +191,13 @@ impl<'a> Context<'a> {
         self.database.users(self.file, kind, &name.text)
     }
 
-    /// Whether a name is in text of this file that had to be skipped, where it may be a use or a declaration.
+    /// Returns whether a name is in text of this file that had to be skipped, where it may be a use or a declaration.
     pub(super) fn is_skipped(&self, kind: EntityKind, name: &Name) -> bool {
         self.note_name(self.file, kind, name);
         self.database.is_skipped(self.file, &name.text)
     }
 
-    /// Whether this file sees a declaration of a name that need not be in any text.
+    /// Returns whether this file sees a declaration of a name, which need not be in any text.
     pub(super) fn is_declared(&self, kind: EntityKind, name: &str) -> bool {
         let name = SmolStr::new(name);
         self.reads.borrow_mut().add_name((self.file, kind, name.clone()));
@@ -210,14 +210,14 @@ impl<'a> Context<'a> {
         self.database.names_in_sight(self.file, kind)
     }
 
-    /// Whether another environment of the file has this one's name except for case. Environments whose names are so alike
-    /// invalidate each other.
+    /// Returns whether another environment of the file has this one's name except for case. Environments whose names
+    /// are so alike invalidate each other.
     pub(super) fn has_twin(&self, environment: &Name) -> bool {
         self.note_name(self.file, EntityKind::Environment, environment);
         self.database.environments_but_for_case(self.file, &environment.text).len() > 1
     }
 
-    /// What the script of an environment of the file is called, and the other environment that is why.
+    /// Returns the name of an environment's script, and the other environment that is why.
     pub(super) fn script_name(&self, environment: &Name) -> Option<(ScriptName, Option<EntityId>)> {
         self.reads.borrow_mut().add_kind(EntityKind::Environment);
         self.database.script_name(self.file, &environment.text)
@@ -229,7 +229,7 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// Whether the entity declares or uses a name.
+    /// Returns whether the entity declares or uses a name.
     fn is_own(&self, kind: EntityKind, name: &Name) -> bool {
         let is_it = |(own_kind, own): (EntityKind, &Name)| own_kind == kind && own.text == name.text;
         let found = self.references.binary_search_by_key(&name.span.start, |(_, own)| own.span.start);
@@ -239,7 +239,7 @@ impl<'a> Context<'a> {
 
 // Other entities.
 impl<'a> Context<'a> {
-    /// What an entity shows to others.
+    /// Returns the signature of an entity.
     pub(super) fn signature(&self, id: EntityId) -> Option<Signature<'a>> {
         if id != self.id {
             self.reads.borrow_mut().add_entity(id);
@@ -247,7 +247,7 @@ impl<'a> Context<'a> {
         self.database.parse(id).map(Signature::of)
     }
 
-    /// What a movement adds up to.
+    /// Returns the summary of a movement.
     pub(super) fn summary(&self, id: EntityId) -> Option<Summary> {
         if id != self.id {
             self.reads.borrow_mut().add_summary(id);
@@ -267,12 +267,13 @@ impl<'a> Context<'a> {
         self.signature(id)?.name()
     }
 
-    /// Whether an entity was read without a syntax error, so that something may be concluded from what it lacks.
+    /// Returns whether an entity was read without a syntax error, so that something may be concluded from what it
+    /// lacks.
     pub(super) fn is_sound(&self, id: EntityId) -> bool {
         self.signature(id).is_some_and(Signature::is_sound)
     }
 
-    /// Whether one robot is declared before another: in the same file, or by the names of their files.
+    /// Returns whether one robot is declared before another: in the same file, or by the names of their files.
     pub(super) fn is_before(&self, one: EntityId, other: EntityId) -> bool {
         let place = |id: EntityId| {
             self.reads.borrow_mut().add_entity(id);

@@ -124,7 +124,7 @@ mod tests {
         WHEELS.to_owned() + &ports.iter().map(robot).collect::<String>()
     }
 
-    /// What is said, and the lines that each fix changes.
+    /// Checks the messages, and the lines that each fix changes.
     fn check(target: Target, program: &str, expected: &Expect) {
         let mut database = Database::new();
         let file = database.open("test.pyr", program);

@@ -15,9 +15,9 @@ pub(crate) struct ProblemEdit {
     pub(crate) span: Span,
     /// With `\n` for the end of a line, whatever the file uses; which it is may change with any edit.
     pub(crate) text: String,
-    /// Whether what is on its sides is to become one word; else words are kept apart.
+    /// True if the text on both sides is to become one word; else words are kept apart.
     pub(crate) joins: bool,
-    /// Whether it is a declaration to put before the entity: at the nearest place where no other one is cut in two.
+    /// True for a declaration to insert before the entity, at the nearest place that cuts no other entity in two.
     pub(crate) declares: bool,
 }
 
@@ -28,7 +28,7 @@ impl ProblemEdit {
     }
 }
 
-/// What people write within a number or a name, such as `1'000`: what is left on either side of it is one word.
+/// Characters that people write within a number or a name, such as `1'000`: the rest on both sides is one word.
 const WITHIN_WORDS: [char; 4] = ['\'', '’', '$', '@'];
 
 impl Context<'_> {
@@ -204,7 +204,7 @@ fn declared_before(database: &Database, id: EntityId) -> Option<EntityId> {
     slots.get(at).map(|slot| slot.entity)
 }
 
-/// Whether an entity is complete, and the next one starts on another line.
+/// Returns whether an entity is complete, and the next one starts on another line.
 fn is_over(database: &Database, id: EntityId) -> bool {
     let Some(entity) = database.entity(id) else { return false };
     let last = entity.parse.tokens.iter().rev().find(|(token, _)| !token.is_comment());
@@ -214,8 +214,8 @@ fn is_over(database: &Database, id: EntityId) -> bool {
     (is_import || entity.parse.errors.is_empty()) && rest.contains(['\n', '\r'])
 }
 
-/// What to remove so that the lines around it stay as they are: where something else is before it on its line, the
-/// end of that line is not part of it, but the space between the two is.
+/// Returns the span to remove so that the lines around it stay as they are: where something else is before it on its
+/// line, the end of that line is not part of it, but the space between the two is.
 fn tidy_removal(database: &Database, file: FileId, span: Span) -> Span {
     /// Longer white space between two things of one line may stay.
     const FAR: u32 = 256;

@@ -51,7 +51,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     }
 }
 
-/// Whether nothing in the block was skipped, and both its braces are there.
+/// Returns whether the block has both its braces, and nothing in it was skipped.
 fn is_understood(context: &Context<'_>, block: &Block) -> bool {
     let inside = |span: Span| block.span.start <= span.start && span.start <= block.span.end;
     block.span.len() >= 2 && !context.errors.iter().any(|error| inside(error.span))

@@ -49,7 +49,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     }
 }
 
-/// Whether the problem of the whole statement says it, too. A name that is none stays one in it.
+/// Returns whether the problem of the whole statement covers the error. An invalid name stays one in it.
 fn is_said(context: &Context<'_>, error: &SyntaxError) -> bool {
     let stays = match &error.kind {
         SyntaxErrorKind::InvalidName { written } => {
@@ -178,7 +178,7 @@ fn characters(context: &Context<'_>, span: Span, written: &str) -> Problem {
 const NAMES: &str = "names are made of the letters a to z and A to Z, digits and `_`";
 const BRACES: &str = "lists and actions are written between `{` and `}`";
 
-/// What looks like a minus sign.
+/// Characters that look like a minus sign.
 const MINUS: [char; 5] = ['-', '\u{2212}', '\u{2013}', '\u{2014}', '\u{2010}'];
 
 /// White space that is none to the language.
@@ -200,7 +200,7 @@ fn shown(written: &str) -> String {
     format!("invisible character {}", numbers.join(" "))
 }
 
-/// What somebody who is used to these characters may not know of the language.
+/// Returns a hint about the language for somebody who is used to these characters.
 fn help(written: &str) -> &'static str {
     let has = |signs: &[char]| written.contains(signs);
     if written.chars().any(char::is_alphabetic) {

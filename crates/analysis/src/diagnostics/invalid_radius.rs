@@ -30,7 +30,7 @@ const PAGE: Page = Page {
 const SMALLEST: f64 = 0.001;
 const LARGEST: f64 = 100_000.0;
 
-/// Whether any wheel could have this radius, in centimetres.
+/// Returns whether any wheel could have this radius, in centimetres.
 pub(super) fn is_possible(radius: f64) -> bool {
     (SMALLEST..=LARGEST).contains(&radius)
 }

@@ -78,7 +78,7 @@ fn wait(context: &Context<'_>, action: &Action, seconds: &Number) -> Option<Prob
 
 /// The outermost loops that take longer than a plan may; if only all actions together do, the longest of the loops.
 fn too_long(context: &Context<'_>, movement: &Movement) -> Vec<Problem> {
-    // To tell how long actions take is not for nothing.
+    // Times are expensive to compute: skip it where there are no loops.
     if !context.actions().any(|action| matches!(action.kind, ActionKind::Repeat(_))) {
         return Vec::new();
     }
@@ -109,7 +109,7 @@ struct Loop<'a> {
     is_always_driven: bool,
 }
 
-/// Adds the loops; returns the time of the other actions. Each action is looked at once: it takes a while to tell its time.
+/// Adds the loops; returns the time of the other actions. Computes each action's time once, because that takes a while.
 fn outermost_loops<'a>(actions: &'a [Action], is_always_driven: bool, found: &mut Vec<Loop<'a>>) -> Time {
     let mut others = Time::default();
     for action in actions {
@@ -141,7 +141,7 @@ struct Clock<'c, 'a> {
 }
 
 impl Clock<'_, '_> {
-    /// What is done is done by the movement with this id.
+    /// Returns `time` in seconds, with that of the movements it includes, whose names are those of the movement `id`.
     fn seconds(&mut self, id: EntityId, time: &Time, depth: usize) -> f64 {
         let mut seconds = time.seconds[self.drive as usize];
         for (name, count) in &time.calls {
@@ -156,7 +156,7 @@ impl Clock<'_, '_> {
         if let Some(total) = self.totals.get(&id) {
             return *total;
         }
-        // What goes round in circles is another mistake, and what is deeper, too.
+        // Circles, and chains that are too long, are reported by another rule.
         self.totals.insert(id, 0.0);
         let summary = self.context.summary(id).filter(|_| depth < calls::LONGEST);
         let total = summary.map_or(0.0, |summary| self.seconds(id, &summary.time, depth));

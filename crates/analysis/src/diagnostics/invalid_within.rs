@@ -86,7 +86,7 @@ pub(super) struct OutOfRange {
     span: Span,
     /// The greatest range of the sensors, metres.
     range: f64,
-    /// How many sensors there are.
+    /// The number of sensors.
     count: usize,
 }
 
@@ -159,7 +159,7 @@ fn located(database: &Database, run: &PlannedRun, found: &OutOfRange) -> Option<
     })
 }
 
-/// Whether all its sensors are known to be bumpers.
+/// Returns whether all its sensors are known to be bumpers.
 fn are_bumpers(context: &Context<'_>, condition: &Condition) -> bool {
     let is_bumper = |name| {
         let id = context.resolve(EntityKind::Sensor, name).entity();
@@ -253,7 +253,7 @@ mod tests {
         database.set_scene(main, "f", Some(""));
         assert_eq!(warnings(&database, "parts.pyr"), said, "once for all environments");
         database.take_touched();
-        // Where the warning is has moved, which the movement itself does not tell.
+        // The place of the warning has moved, though the movement itself is the same.
         database.edit(parts, Span::at(0), "\n");
         assert!(database.take_touched().contains(&parts));
         assert_eq!(warnings(&database, "parts.pyr"), said);

@@ -7,10 +7,10 @@ use pydslrep_scene::ENDING;
 use super::{CATALOGUE, Rule, not_in_article};
 use crate::{Absence, Database, Diagnostic, Edition, Target};
 
-/// What a rule tells a person who wants to know more than its message says.
+/// The manual page of a rule, for a person who wants to know more than its message says.
 #[derive(Debug)]
 pub struct Page {
-    /// What the rule finds.
+    /// A description of what the rule finds.
     pub what: &'static str,
     /// Why that matters.
     pub why: &'static str,
@@ -18,7 +18,7 @@ pub struct Page {
     pub imports: &'static [(&'static str, &'static str)],
     /// A program with this problem, once, and with no other.
     pub example: &'static str,
-    /// What it should have been: a program without any problem.
+    /// The corrected program, without any problem.
     pub fixed: &'static str,
 }
 

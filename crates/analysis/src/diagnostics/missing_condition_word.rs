@@ -50,12 +50,12 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     }
 }
 
-/// Whether it is the article's `turn left until { … }`.
+/// Returns whether it is the article's `turn left until { … }`.
 fn may_do_without(action: &Action) -> bool {
     matches!(&action.kind, ActionKind::Turn(turn) if turn.is_of_article())
 }
 
-/// Whether its list and what follows that were read without a mistake, which may be the word.
+/// Returns whether its list, and the text after it that may be the word, were read without a mistake.
 fn is_understood(context: &Context<'_>, condition: &Condition) -> bool {
     let around = |at: u32| condition.span.start <= at && at <= condition.span.end + 1;
     let is_list = !condition.sensors.broken && !condition.sensors.names.is_empty();

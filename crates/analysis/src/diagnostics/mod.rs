@@ -87,15 +87,15 @@ pub enum Tag {
 pub struct Rule {
     /// Its stable name.
     pub code: &'static str,
-    /// How bad it usually is.
+    /// Its usual severity.
     pub severity: Severity,
-    /// What it finds, in one sentence.
+    /// A summary of what it finds, in one sentence.
     pub summary: &'static str,
-    /// How an editor may show the text it is about.
+    /// The way in which an editor may show the text it is about.
     pub tag: Option<Tag>,
     /// The best fix it may offer.
     pub applicability: Applicability,
-    /// What there is to say about it beside its messages.
+    /// The manual page, which says more than its messages.
     pub page: Page,
     check: fn(&Context<'_>, &mut Vec<Problem>),
 }
@@ -107,7 +107,7 @@ impl PartialEq for Rule {
 }
 
 impl Rule {
-    /// Whether it is about text that is not understood, so that what there is to say of its meaning is hidden.
+    /// Returns whether it is about text that is not understood, so that problems of its meaning are hidden.
     pub(crate) fn is_of_text(&self) -> bool {
         let of_text = [
             &syntax_error::RULE,
@@ -194,7 +194,7 @@ struct Reported<'a> {
     /// Where its entity starts.
     start: u32,
     problem: &'a Problem,
-    /// Whether it is an open brace that is closed after declarations that do not belong within it.
+    /// True for an open brace that is closed after declarations that do not belong within it.
     is_nested: bool,
 }
 

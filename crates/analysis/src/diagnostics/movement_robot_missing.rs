@@ -130,7 +130,7 @@ mod tests {
             "wheel a with radius 4\nwheel b with radius 4\nrobot r with port 1 has { a b } wheels\n\
              movement m of r { turn left }",
         );
-        // What is right beside an edit is read again anyway; neither the environment nor its robot may be right beside it.
+        // Text right beside an edit is read again anyway; neither the environment nor its robot may be right beside it.
         let twin = "robot r\n";
         let program = format!(
             "import \"lib.pyr\"\n{twin}sensor between\nrobot q with port 3 has {{ a b }} wheels\n\

@@ -63,7 +63,7 @@ movement trip of rover { repeat 2 times { turn left } }
 environment yard has { rover } robots with { trip } moves",
 };
 
-/// How many blocks may be one in another.
+/// The maximum depth of nested blocks.
 pub const MOST_BLOCKS: usize = 16;
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
@@ -142,7 +142,7 @@ mod tests {
         assert_eq!(count(&program(&nested(17))), 1);
     }
 
-    /// How often it is reported.
+    /// Returns how often it is reported.
     fn count(text: &str) -> usize {
         let mut database = crate::Database::new();
         let file = database.open("a.pyr", text);
@@ -165,7 +165,7 @@ mod tests {
         assert_eq!(count(&row(200, "turn left")), 0);
         assert_eq!(count(&row(201, "turn left")), 0, "the first one does two hundred");
         assert_eq!(count(&row(203, "turn left")), 2);
-        // Too large a circle to be called one, but not to be told.
+        // Too large a circle to be called one, but not too large to be reported.
         assert_eq!(count(&row(300, "do m1")), 300);
     }
 }

@@ -70,7 +70,7 @@ fn problem(context: &Context<'_>, span: Span) -> Problem {
         .help("write it with moves, turns and `slam`, or leave out `edition`")
 }
 
-/// What an action has of it; the actions in its blocks are not looked at.
+/// Returns the extensions that an action uses; the actions in its blocks are not looked at.
 fn extensions(tokens: &[Token], action: &Action) -> Vec<Span> {
     match &action.kind {
         ActionKind::Move(step) => step.until.iter().map(|until| until.span).collect(),

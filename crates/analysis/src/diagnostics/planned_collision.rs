@@ -70,7 +70,8 @@ pub(super) fn in_runs(database: &Database, file: FileId, runs: &[Arc<PlannedRun>
     problems.filter(|problem| problem.file == file).collect()
 }
 
-/// How an environment drives in its scene; it names no places, so that it holds as long as the environment does.
+/// The planned run of an environment in its scene; it names no places, so that it holds as long as the environment
+/// does.
 #[derive(Debug)]
 pub(crate) struct PlannedRun {
     environment: Environment,
@@ -92,7 +93,7 @@ impl PlannedRun {
         Some(Self { environment, scene, movements, met, out_of_range })
     }
 
-    /// Whether there is anything to say of it.
+    /// Returns whether it has problems.
     pub(crate) fn has_problems(&self) -> bool {
         !self.met.is_empty() || !self.out_of_range.is_empty()
     }

@@ -1,4 +1,4 @@
-//! What a rule reports.
+//! The problems that rules report.
 
 use pydslrep_syntax::{EntityKind, Span};
 use smol_str::SmolStr;
@@ -24,7 +24,7 @@ pub(crate) struct Problem {
     pub(crate) sought: Option<(EntityKind, SmolStr)>,
     /// The kinds of entities that could have prevented it by using what it is about.
     pub(crate) users: &'static [EntityKind],
-    /// What it says of a brace, where another entity may have the other half.
+    /// The brace it is about, where another entity may have the other half.
     pub(crate) brace: Option<Brace>,
     pub(crate) fixes: Vec<ProblemFix>,
 }
@@ -135,7 +135,7 @@ impl Problem {
         self.add_fix(title.into(), false, edits.into())
     }
 
-    /// Whether a fix renames something wherever it is used.
+    /// Returns whether a fix renames something wherever it is used.
     pub(crate) fn renames(&self) -> bool {
         self.fixes.iter().any(|fix| fix.renames.is_some())
     }

@@ -50,7 +50,7 @@ environment yard has { rover scout } robots with { go follow } moves",
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(Entity::Movement(movement)) = context.tree else { return };
     let (Some(parallel), Some(name)) = (movement.parallel, &movement.name) else { return };
-    // What another movement does runs as a part of that one: only the lists of environments count.
+    // A movement that another one does runs as a part of that one: only the lists of environments count.
     let listed = |user: &&EntityId| context.signature(**user).is_none_or(|user| user.movement().is_none());
     let users: Vec<_> = context.users(EntityKind::Movement, name).iter().filter(listed).collect();
     if !context.errors.is_empty() || users.is_empty() || context.is_imported() {
@@ -122,7 +122,7 @@ mod tests {
         check_clean(&format!(
             "{PARTS}parallel movement n of q {{ turn left }}\nenvironment e has {{ r q }} robots with {{ m n }} moves"
         ));
-        // What another movement does is no part of a list.
+        // A movement that another one does is no part of a list.
         check_clean(&format!(
             "{PARTS}movement n of r {{ do m }}\nenvironment e has {{ r }} robots with {{ n }} moves"
         ));

@@ -87,7 +87,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     }
 }
 
-/// How many distance sensors the robot has; `None` where one of its sensors is not known.
+/// Returns the number of distance sensors of the robot; `None` where one of its sensors is not known.
 fn distance_sensors(context: &Context<'_>, id: EntityId, robot: &Robot) -> Option<usize> {
     let names = robot.sensors.as_ref().map_or(&[][..], |list| &list.names);
     let mut counted: Vec<&str> = Vec::new();

@@ -1,4 +1,4 @@
-//! How the tests of all rules look at a program.
+//! Helpers that the tests of all rules share.
 
 use expect_test::Expect;
 use pydslrep_syntax::Span;
@@ -84,7 +84,7 @@ fn check_fix(program: &str, before: &[Diagnostic], fixed: &Diagnostic, after: &s
     }
 }
 
-/// What sort of fix it is.
+/// Returns the applicability of a fix.
 pub(super) fn applicability(fix: &Fix) -> Applicability {
     if fix.safe { Applicability::Safe } else { Applicability::Suggested }
 }

@@ -66,7 +66,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     });
 }
 
-/// How something of a kind takes part in a program; environments need nobody.
+/// Returns how to use an entity of a kind; `None` for environments, which nothing uses.
 fn place_of(kind: EntityKind) -> Option<&'static str> {
     match kind {
         EntityKind::Wheel => Some("list it among the wheels of a robot"),
@@ -80,7 +80,7 @@ fn place_of(kind: EntityKind) -> Option<&'static str> {
     }
 }
 
-/// What uses something of a kind.
+/// Returns the kinds of entities that use a kind.
 fn users_of(kind: EntityKind) -> &'static [EntityKind] {
     match kind {
         EntityKind::Wheel => &[EntityKind::Robot],
@@ -92,7 +92,7 @@ fn users_of(kind: EntityKind) -> &'static [EntityKind] {
     }
 }
 
-/// Whether all that it uses is used elsewhere, too; otherwise removing it would only move the problem.
+/// Returns whether all that it uses is used elsewhere, too; otherwise removing it would only move the problem.
 fn leaves_nothing_unused(context: &Context<'_>) -> bool {
     let is_used = |(kind, name): &(EntityKind, &Name)| {
         context.users(*kind, name).iter().any(|user| *user != context.id)

@@ -81,7 +81,7 @@ pub(super) fn fitting(context: &Context<'_>, list: &References) -> Option<Drive>
     Drive::from_wheels(&kinds?)
 }
 
-/// How to list wheels, by their number.
+/// Returns the order in which to list wheels, by their number.
 pub(super) fn wheel_orders() -> String {
     let types = Drive::wheel_counts().into_iter().filter_map(|count| Drive::with_wheels(count).next());
     let orders = types.enumerate().map(|(index, drive)| {

@@ -75,7 +75,7 @@ fn alternating(context: &Context<'_>, first: &Name, second: &Name, names: &[Name
     let lefts = names.iter().filter(|name| has_right(name) && !has_left(name));
     let rights = names.iter().filter(|name| has_left(name) && !has_right(name));
     let sorted: Vec<&Name> = lefts.chain(rights).collect();
-    // Of a wheel without a counterpart, or with two, nobody can tell the side.
+    // The side of a wheel without a counterpart, or with two, is unknown.
     if sorted.len() != names.len() {
         return problem;
     }
@@ -84,7 +84,7 @@ fn alternating(context: &Context<'_>, first: &Name, second: &Name, names: &[Name
     problem.suggestion("list the left wheels first", edits)
 }
 
-/// Whether the names differ in exactly one letter, R in the first and L in the second.
+/// Returns whether the names differ in exactly one letter, R in the first and L in the second.
 fn is_right_of(first: &str, second: &str) -> bool {
     let mut differences = first.chars().zip(second.chars()).filter(|(a, b)| a != b);
     let one = differences.next();

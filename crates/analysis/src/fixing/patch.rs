@@ -7,7 +7,7 @@ use crate::{Edit, FileId};
 /// A text that was changed, as what is left of the one it was and what came in between.
 #[derive(Debug)]
 pub(super) struct Patch {
-    /// How long the text was.
+    /// The length of the original text, in bytes.
     len: u32,
     fragments: Vec<Fragment>,
 }
@@ -53,7 +53,7 @@ impl Patch {
         }
     }
 
-    /// What changed, as edits of the text that it was.
+    /// Returns the changes, as edits of the original text.
     pub(super) fn edits(&self, file: FileId) -> Vec<Edit> {
         let mut edits = Vec::new();
         let (mut done, mut come) = (0, String::new());

@@ -1,4 +1,4 @@
-//! What people write who know it from elsewhere, or who put it in the wrong place: each gets its own words.
+//! Common mistakes of people who know another language, or who misplace a part: each gets its own message.
 
 use pydslrep_syntax::ast::Entity;
 use pydslrep_syntax::{Expected, Quantity, Span, TokenKind};

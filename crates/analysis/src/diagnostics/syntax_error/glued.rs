@@ -17,7 +17,7 @@ pub(super) struct Glued {
     written: String,
     /// The same with blanks.
     apart: String,
-    /// Whether no part of it is a name, which somebody may have chosen.
+    /// True if no part of it is a name, which somebody may have chosen.
     is_certain: bool,
 }
 
@@ -97,7 +97,7 @@ fn keywords_in(word: &str) -> Vec<Vec<&str>> {
         .collect()
 }
 
-/// Whether a word is divided after this keyword: after those that many names begin with, it is not.
+/// Returns whether a word is divided after this keyword: after those that many names begin with, it is not.
 fn divides(token: TokenKind) -> bool {
     use TokenKind::{Bumper, Distance, Import, Repeat, Seconds, Times, Wait};
     token.is_keyword() || matches!(token, Bumper | Distance | Import | Repeat | Seconds | Times | Wait)
@@ -121,7 +121,7 @@ fn edit(context: &Context<'_>, span: Span, apart: &str) -> ProblemEdit {
     context.replace(span, if follows { format!(" {apart}") } else { apart.to_owned() })
 }
 
-/// Whether an entity has no errors once its words are separated.
+/// Returns whether an entity has no errors once its words are separated.
 pub(super) fn explain_all(context: &Context<'_>, found: &[Glued]) -> bool {
     let edits: Vec<ProblemEdit> = found.iter().map(|glued| edit(context, glued.span, &glued.apart)).collect();
     !found.is_empty() && repair::has_no_errors(context, &edits)
@@ -132,7 +132,7 @@ impl Glued {
         self.span
     }
 
-    /// Whether an error is about this word.
+    /// Returns whether an error is about this word.
     pub(super) fn explains(&self, error: Span) -> bool {
         self.span.touches(error.start) || self.span.touches(error.end)
     }

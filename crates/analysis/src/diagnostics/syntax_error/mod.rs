@@ -123,7 +123,7 @@ fn keyword_as_name(context: &Context<'_>, span: Span, written: &str, of: EntityK
     }
 }
 
-/// Whether a name is written without `^`.
+/// Returns whether a name is written without `^`.
 fn is_bare(name: &Name) -> bool {
     name.span.len() as usize == name.text.len()
 }

@@ -11,7 +11,7 @@ use crate::diagnostics::problem::Problem;
 const MOST_ERRORS: usize = 4;
 pub(super) const LONGEST: u32 = 16 * 1024;
 
-/// Whether the entity has fewer errors after the edits, and is still one entity.
+/// Returns whether the entity has fewer errors after the edits, and is still one entity.
 pub(super) fn is_fixed(context: &Context<'_>, edits: &[ProblemEdit]) -> bool {
     entities_if_fixed(context, edits) == Some(1)
 }
@@ -21,7 +21,7 @@ pub(super) fn is_split(context: &Context<'_>, edits: &[ProblemEdit]) -> bool {
     entities_if_fixed(context, edits).is_some()
 }
 
-/// Whether nothing is wrong after the edits, which may also begin another entity.
+/// Returns whether nothing is wrong after the edits, which may also begin another entity.
 pub(super) fn has_no_errors(context: &Context<'_>, edits: &[ProblemEdit]) -> bool {
     entities_and_errors(context, edits).is_some_and(|(_, errors)| errors == 0)
 }
@@ -31,7 +31,7 @@ fn entities_if_fixed(context: &Context<'_>, edits: &[ProblemEdit]) -> Option<usi
     (errors < context.errors.len()).then_some(entities)
 }
 
-/// How many entities and errors there are after the edits; `None` where that is not tried.
+/// Returns the number of entities and of errors after the edits; `None` where there is too much to try that.
 fn entities_and_errors(context: &Context<'_>, edits: &[ProblemEdit]) -> Option<(usize, usize)> {
     let end = context.tokens.last()?.1.end;
     if context.errors.len() > MOST_ERRORS || end > LONGEST {
@@ -52,7 +52,7 @@ fn entities_and_errors(context: &Context<'_>, edits: &[ProblemEdit]) -> Option<(
 
 /// Offers to insert what is missing at `span`, where exactly one thing fixes it.
 pub(super) fn insert(context: &Context<'_>, problem: Problem, span: Span, expected: &[Expected]) -> Problem {
-    /// What is often forgotten together.
+    /// Words that are often forgotten together.
     const TOGETHER: [&str; 4] = ["with radius", "} wheels", "} robots", "} moves"];
     let before = token_before(context, span);
     let words = expected.iter().filter_map(|expected| match expected {
@@ -92,7 +92,7 @@ pub(super) fn closing(context: &Context<'_>, place: Span) -> ProblemEdit {
     context.replace(place, if has_lines { "\n}" } else { " }" })
 }
 
-/// Whether a brace at this place is one of a movement's own.
+/// Returns whether a brace at this place is one of a movement's own.
 pub(super) fn is_body(context: &Context<'_>, place: Span) -> bool {
     let before =
         context.tokens.iter().rev().filter(|(token, span)| !token.is_comment() && span.end <= place.start);
@@ -103,7 +103,7 @@ pub(super) fn is_body(context: &Context<'_>, place: Span) -> bool {
     matches!(context.tree, Some(Entity::Movement(_))) && !list
 }
 
-/// What is before the list of a condition.
+/// The keywords before the list of a condition.
 const CONDITIONS: TokenSet = TokenSet::of(&[TokenKind::Until, TokenKind::If]);
 
 fn is_in_condition(context: &Context<'_>, place: Span) -> bool {
@@ -131,7 +131,7 @@ fn token_before(context: &Context<'_>, span: Span) -> Option<TokenKind> {
     before.map(|(token, _)| *token)
 }
 
-/// Whether the text at `span` is what is right before it, too, and once is enough.
+/// Returns whether the text at `span` repeats the text right before it, and once is enough.
 pub(super) fn is_doubled(context: &Context<'_>, span: Span) -> bool {
     let before =
         context.tokens.iter().rev().find(|(token, other)| !token.is_comment() && other.end <= span.start);

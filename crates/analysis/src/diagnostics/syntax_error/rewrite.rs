@@ -1,8 +1,8 @@
 //! Statements written as in another language, such as `radius = 4.5`, `move(2)` or `robot r wheels { a b }`: one problem
 //! for each, with the whole statement as its fix.
 //!
-//! What is meant is read off the names, numbers and keywords that are there; where anything else is among them,
-//! nothing is guessed.
+//! The intention is read off the names, numbers and keywords that are there; where anything else is among them, nothing
+//! is guessed.
 
 mod actions;
 mod entities;
@@ -23,25 +23,25 @@ const MOST_TOKENS: usize = 64;
 pub(crate) struct Rewrite {
     /// From its first token to its last.
     span: Span,
-    /// How it is written.
+    /// The correct spelling.
     text: String,
-    /// What is missing and what does not belong there.
+    /// The missing and the superfluous parts.
     message: String,
-    /// What the fix is called.
+    /// The title of the fix.
     title: String,
     /// The pattern to follow.
     help: String,
-    /// Whether it is only a fix for a problem that has no other.
+    /// True for a fix that is offered only for a problem that has no other.
     is_fallback: bool,
 }
 
 impl Rewrite {
-    /// Whether it takes the place of what else there is to say of a place.
+    /// Returns whether it replaces all other problems at a span.
     pub(crate) fn covers(&self, span: Span) -> bool {
         !self.is_fallback && self.reaches(span)
     }
 
-    /// Whether a name is written in it as it was.
+    /// Returns whether a name is in it as it was written.
     pub(crate) fn keeps(&self, name: &str) -> bool {
         self.text.split(' ').any(|word| word == name)
     }
@@ -165,7 +165,7 @@ fn rewrite(words: &[Word], text: String, help: String, is_fallback: bool) -> Opt
     Some(Rewrite { span, text, message, title, help, is_fallback })
 }
 
-/// What tells words from a statement.
+/// The differences between some words and a correct statement.
 struct Difference {
     /// Runs of words that are missing.
     missing: Vec<String>,
@@ -214,7 +214,7 @@ impl Difference {
         self.missing.is_empty() && self.respelt.is_empty() && self.extra.iter().any(is_keyword)
     }
 
-    /// What is wrong, in words.
+    /// Returns the message.
     fn message(&self) -> String {
         let (written, meant): (Vec<_>, Vec<_>) = self.respelt.iter().cloned().unzip();
         let clause = |words: &[String], one: &str, many: &str| match words.len() {
@@ -244,7 +244,7 @@ fn quoted(words: &[String]) -> String {
     }
 }
 
-/// Whether texts are one entity each without a mistake, but for names that cannot be ones.
+/// Returns whether each text is one entity without a mistake, invalid names aside.
 fn are_sound(texts: &[&str]) -> bool {
     let pieces = parse(&texts.join("\n"));
     let is_name = |kind: &SyntaxErrorKind| matches!(kind, SyntaxErrorKind::InvalidName { .. });

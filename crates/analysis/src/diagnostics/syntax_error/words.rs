@@ -1,11 +1,11 @@
-//! What was expected, in a person's terms.
+//! The expected text, in a person's terms.
 
 use pydslrep_syntax::ast::Entity;
 use pydslrep_syntax::{EntityKind, Expected, Quantity, TokenKind};
 
 use crate::diagnostics::context::Context;
 
-/// How all actions are written.
+/// Returns a sentence that shows the syntax of all actions.
 pub(super) fn actions() -> String {
     format!(
         "an action is written {}",
@@ -13,14 +13,14 @@ pub(super) fn actions() -> String {
     )
 }
 
-/// How the action that a keyword begins is written.
+/// Returns a sentence that shows the syntax of the action that a keyword begins.
 pub(super) fn action(keyword: TokenKind) -> String {
     format!("a {} is written {}", keyword.spelling().unwrap_or_default(), quoted(keyword.examples()))
 }
 
 const CONDITION: &str = "a condition is written `{ SENSORS } clear` or `{ SENSORS } detect`";
 
-/// What belongs between the braces that are missing after a word of an action.
+/// Returns what belongs between the braces that are missing after a keyword of an action.
 pub(super) fn after(before: TokenKind, expected: &[Expected]) -> Option<&'static str> {
     let braces = expected == [Expected::Word(TokenKind::OpenBrace)];
     if !braces && expected != [Expected::ReferenceTo(EntityKind::Sensor)] {
@@ -93,9 +93,8 @@ pub(super) fn shape(
     Some(format!("{} is written `{shape}`", kind.a_noun()))
 }
 
-/// What is worth saying of all that could be in a place: where a name or a brace would do, not that a comma would
-/// as well; where a movement's brace is open, not every word that could continue its last action; and nothing that
-/// is optional where something must follow.
+/// Returns the expectations worth mentioning: where a name or a brace would do, no comma; in the open brace of a
+/// movement, not every word that could continue its last action; and nothing optional where something must follow.
 pub(super) fn telling(expected: &[Expected]) -> Vec<Expected> {
     let closes = expected.contains(&Expected::Word(TokenKind::CloseBrace));
     let lists = expected.iter().any(|expected| matches!(expected, Expected::ReferenceTo(_)));

@@ -29,7 +29,7 @@ pub(super) fn find(context: &Context<'_>) -> Vec<Rewrite> {
     found.into_iter().map(|(rewrite, _)| rewrite).collect()
 }
 
-/// How many mistakes there are in a range.
+/// Returns the number of errors in a range.
 fn errors_in(context: &Context<'_>, span: Span) -> usize {
     let inside =
         |error: &&pydslrep_syntax::SyntaxError| span.start <= error.span.start && error.span.end <= span.end;
@@ -101,7 +101,7 @@ fn statements<'a>(context: &Context<'_>, body: &'a [Token]) -> Vec<&'a [Token]> 
     starts.windows(2).map(|pair| &body[pair[0]..pair[1]]).filter(|part| !part.is_empty()).collect()
 }
 
-/// Whether the parser takes a statement for an action; it has passed over what follows one that it does not.
+/// Returns whether the parser takes a statement for an action; otherwise it skipped the rest of the statement.
 fn begins_action(statement: &[Token]) -> bool {
     let first = statement.iter().find(|(token, _)| !token.is_comment());
     first.is_some_and(|(token, _)| token.is_action())
@@ -139,7 +139,7 @@ fn is_nearly(written: &str, verb: &str) -> bool {
     written == verb || is_similar(written, verb)
 }
 
-/// Whether another first word is all that it takes.
+/// Returns whether another first word is all that it takes.
 fn is_one_word_away(words: &[Word], text: &str) -> bool {
     let rest = words.iter().skip(1).map(|word| word.text.as_str());
     rest.eq(text.split(' ').skip(1))
@@ -152,7 +152,7 @@ enum Verb {
     Slam,
 }
 
-/// What a word asks for: `move`, `drive`, `rover.turn_left`.
+/// Returns the verb that a word stands for: `move`, `drive`, `rover.turn_left`.
 fn verb(written: &str) -> Option<Verb> {
     let word = written.rsplit('.').next()?.to_lowercase().replace('_', "");
     let ways = ["", "move", "go", "drive", "walk", "run"];
@@ -170,7 +170,7 @@ fn verb(written: &str) -> Option<Verb> {
     })
 }
 
-/// What a statement says beside its verb.
+/// The parts of a statement beside its verb.
 #[derive(Debug, Default)]
 struct Said<'a> {
     numbers: Vec<&'a str>,

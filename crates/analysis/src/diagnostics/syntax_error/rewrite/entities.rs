@@ -50,7 +50,7 @@ pub(super) fn find(context: &Context<'_>, kind: EntityKind) -> Option<Rewrite> {
     rewrite(&words, text.clone(), help, !is_one)
 }
 
-/// Whether most of the entity's keywords are missing, so that it is one mistake and not several.
+/// Returns whether most of the entity's keywords are missing, so that it is one mistake and not several.
 fn is_short(words: &[Word], kind: EntityKind, mistakes: usize, has_brackets: bool) -> bool {
     let lacks = |token: TokenKind| !words.iter().any(|word| word.token == token);
     let lacks_braces = lacks(TokenKind::OpenBrace) && !has_brackets;
@@ -185,7 +185,7 @@ struct List<'a> {
 }
 
 impl List<'_> {
-    /// Whether it is called so.
+    /// Returns whether `word` says what the list holds.
     fn is(&self, word: TokenKind) -> bool {
         self.before == Some(word)
             || self.before.is_none_or(|before| before == TokenKind::Has) && self.after == Some(word)
