@@ -112,7 +112,7 @@ pub struct PortNumber {
     pub value: Option<u16>,
     /// Its span.
     pub span: Span,
-    /// Whether it is a whole number at all; where it is not, an error has been reported.
+    /// True if it is a whole number at all; if it is not, an error has been reported.
     pub whole: bool,
 }
 
@@ -123,7 +123,7 @@ pub struct References {
     pub names: Vec<Name>,
     /// From brace to brace.
     pub span: Span,
-    /// Whether something in it could not be understood, so that nothing may be concluded from its length.
+    /// True if something in it could not be understood, so that nothing may be concluded from its length.
     pub broken: bool,
 }
 
@@ -154,7 +154,7 @@ pub struct Wheel {
 pub struct Sensor {
     /// Its name.
     pub name: Option<Name>,
-    /// What is written after `:`.
+    /// The kind after `:`.
     pub kind: Option<(SensorKind, Span)>,
 }
 
@@ -198,7 +198,7 @@ pub struct DriveClause {
     pub word: Option<Drive>,
     /// From `type` to the word.
     pub span: Span,
-    /// Whether it is before the name, as the article's grammar prints it.
+    /// True if it is before the name, as in the article's grammar.
     pub before_name: bool,
 }
 
@@ -242,14 +242,14 @@ impl Movement {
 /// One action and the text it covers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Action {
-    /// What to do.
+    /// The action and its values.
     pub kind: ActionKind,
     /// From its keyword to its last word or brace.
     pub span: Span,
 }
 
 impl Action {
-    /// What decides when it ends: the condition of an `until`.
+    /// Returns the condition that decides when it ends: that of its `until`.
     pub fn until(&self) -> Option<&Condition> {
         match &self.kind {
             ActionKind::Move(Move { until, .. })
@@ -329,7 +329,7 @@ impl Action {
 /// The actions of a block with those in their blocks, in the order of the text.
 #[derive(Debug, Clone)]
 pub struct Nested<'a> {
-    /// What is left of each block, the outermost first.
+    /// The remaining actions of each block, the outermost first.
     open: Vec<std::slice::Iter<'a, Action>>,
     /// The blocks of the latest action that are not entered yet, the last one first.
     blocks: Vec<(usize, &'a Block)>,
@@ -402,7 +402,7 @@ pub struct Block {
 /// `move`
 #[derive(Debug, Clone, PartialEq)]
 pub struct Move {
-    /// How far, in `unit`; it may be absent beside `until`.
+    /// The distance, in `unit`; it may be absent beside `until`.
     pub distance: Option<Number>,
     /// `meters` or `centimeters`.
     pub unit: Option<(Unit, Span)>,
@@ -424,7 +424,7 @@ pub struct SpeedClause {
 /// `until { … } clear`
 #[derive(Debug, Clone, PartialEq)]
 pub struct Until {
-    /// What ends the action.
+    /// The condition that ends the action.
     pub condition: Condition,
     /// From `until` to the end of the condition.
     pub span: Span,
@@ -443,7 +443,7 @@ pub struct Condition {
     pub span: Span,
 }
 
-/// What a condition asks of its sensors.
+/// The state of its sensors that a condition asks for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SensorState {
     /// None of them detects anything.
@@ -473,7 +473,7 @@ pub enum Unit {
 }
 
 impl Unit {
-    /// How many metres one of it is.
+    /// Returns its length in metres.
     pub fn in_metres(self) -> f64 {
         match self {
             Self::Meters => 1.0,
@@ -487,7 +487,7 @@ impl Unit {
 pub struct Turn {
     /// `left` or `right`.
     pub direction: Option<(Direction, Span)>,
-    /// How far, in degrees; 90 where neither that nor `until` is written.
+    /// The angle, in degrees; 90 where neither that nor `until` is written.
     pub angle: Option<Number>,
     /// `with radius 1.5 meters`: on a circle instead of in place.
     pub circle: Option<Circle>,
@@ -500,7 +500,7 @@ pub struct Turn {
 }
 
 impl Turn {
-    /// Whether it has the article's form `turn left until { … }` and nothing that the article does not have.
+    /// Returns whether it has the article's form `turn left until { … }` and nothing that the article does not have.
     pub fn is_of_article(&self) -> bool {
         let plain = self.circle.is_none() && self.speed.is_none() && self.reverse.is_none();
         plain && (self.until.as_ref()).is_none_or(|until| self.angle.is_none() && until.condition.is_bare())
@@ -508,7 +508,7 @@ impl Turn {
 }
 
 impl Condition {
-    /// Whether it names its sensors and nothing else.
+    /// Returns whether it names its sensors and nothing else.
     pub fn is_bare(&self) -> bool {
         self.state.is_none() && self.within.is_none()
     }
@@ -537,7 +537,7 @@ pub enum Direction {
 /// `wait`
 #[derive(Debug, Clone, PartialEq)]
 pub struct Wait {
-    /// How long; it may be absent beside `until`.
+    /// The time; it may be absent beside `until`.
     pub seconds: Option<Number>,
     /// `until { … } clear`
     pub until: Option<Until>,
@@ -546,13 +546,13 @@ pub struct Wait {
 /// `repeat`
 #[derive(Debug, Clone, PartialEq)]
 pub struct Repeat {
-    /// How often.
+    /// The number of rounds.
     pub rounds: Option<Rounds>,
-    /// What is done in each round.
+    /// The actions of each round.
     pub block: Option<Block>,
 }
 
-/// How often a block is repeated.
+/// The number of rounds of a block.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Rounds {
     /// `4 times`
@@ -575,7 +575,7 @@ pub struct If {
 pub struct Branch {
     /// When its block is done.
     pub condition: Option<Condition>,
-    /// What is done.
+    /// The actions.
     pub block: Option<Block>,
     /// From `if` to the closing brace.
     pub span: Span,
@@ -608,6 +608,6 @@ pub struct IpClause {
     pub name: Option<Name>,
     /// From its first word or comma to its last.
     pub span: Span,
-    /// Whether it is the older spelling.
+    /// True for the older spelling.
     pub with_comma: bool,
 }

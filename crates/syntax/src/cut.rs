@@ -4,13 +4,13 @@
 //! a piece of its own. A mistake inside an entity, such as a brace that is never closed, therefore never reaches the
 //! next one. A word that is nearly a keyword begins an entity, too, where what follows it leaves no doubt.
 //!
-//! Whether a token begins an entity depends on the entity it is in, the token before it and the [`LOOKAHEAD`] tokens
-//! after it and on nothing else. That bound is what incremental analysis relies on; widen it only together with
+//! The decision that a token begins an entity depends on the entity it is in, the token before it and the [`LOOKAHEAD`]
+//! tokens after it and on nothing else. That bound is what incremental analysis relies on; widen it only together with
 //! `pydslrep-analysis`'s rule for growing the window of an edit.
 
 use crate::{EntityKind, Token, TokenKind, TokenSet};
 
-/// How many tokens after one can matter for whether it begins an entity.
+/// The number of tokens after one that can matter for whether it begins an entity.
 pub const LOOKAHEAD: usize = 2;
 
 /// The indices into `tokens`, which are places in `text`, at which entities (and imports) begin.
@@ -48,7 +48,7 @@ fn could_be_misspelt(token: TokenKind) -> bool {
     matches!(token, TokenKind::Name | TokenKind::Wheels | TokenKind::Sensors | TokenKind::Robots)
 }
 
-/// Whether the entity before `token` may be over after `previous`, so that a misspelt keyword may follow.
+/// Returns whether the entity before `token` may be over after `previous`, so that a misspelt keyword may follow.
 fn may_end(previous: Option<TokenKind>, token: TokenKind, inside: Option<EntityKind>) -> bool {
     let Some(previous) = previous else { return true };
     match previous {
@@ -91,7 +91,7 @@ pub(crate) fn misspelt_beginning(text: &str, tokens: &[Token]) -> Option<TokenKi
     TokenKind::closest(written, TokenKind::DECLARATIONS.into_iter().filter(follows))
 }
 
-/// What can follow the name of an entity with such a keyword, also where a word is missing.
+/// Returns the tokens that can follow the name of an entity with such a keyword, also where a word is missing.
 const fn clauses(keyword: TokenKind) -> TokenSet {
     const NUMBER: TokenSet =
         TokenSet::of(&[TokenKind::Integer, TokenKind::Float, TokenKind::Ipv4, TokenKind::MalformedNumber]);
@@ -108,7 +108,7 @@ const fn clauses(keyword: TokenKind) -> TokenSet {
     }
 }
 
-/// Whether a token is one of `set`, or a word that is nearly one of its keywords.
+/// Returns whether a token is one of `set`, or a word that is nearly one of its keywords.
 fn is_one_of(text: &str, (token, span): Token, set: TokenSet) -> bool {
     let words =
         [TokenKind::With, TokenKind::Radius, TokenKind::Type, TokenKind::Port, TokenKind::Has, TokenKind::Of];

@@ -9,7 +9,7 @@ use crate::{EntityKind, Span, TokenKind};
 pub struct SyntaxError {
     /// The smallest text that has to change; empty where something is missing.
     pub span: Span,
-    /// What is wrong.
+    /// Its kind, with the details.
     pub kind: SyntaxErrorKind,
 }
 
@@ -18,18 +18,18 @@ pub struct SyntaxError {
 pub enum SyntaxErrorKind {
     /// Something has to be between what came before and what comes next.
     Missing {
-        /// What could be there.
+        /// All that could be there.
         expected: Vec<Expected>,
-        /// What comes next.
+        /// The next token.
         found: Found,
         /// The entity it is part of.
         inside: Option<EntityKind>,
     },
     /// Something is where something else belongs.
     Unexpected {
-        /// What could be there.
+        /// All that could be there.
         expected: Vec<Expected>,
-        /// What is there.
+        /// The token that is there.
         found: Found,
         /// The entity it is part of.
         inside: Option<EntityKind>,
@@ -61,7 +61,7 @@ pub enum SyntaxErrorKind {
     KeywordAsName {
         /// As written.
         written: SmolStr,
-        /// What the name would be of.
+        /// The kind of the named entity.
         of: EntityKind,
     },
     /// Digits and points that are no number.
@@ -76,7 +76,7 @@ pub enum SyntaxErrorKind {
     },
     /// `{ }` where at least one reference must be.
     EmptyList {
-        /// What it should list.
+        /// The kind of its entries.
         of: EntityKind,
     },
     /// Characters no token starts with.
@@ -91,7 +91,7 @@ pub enum SyntaxErrorKind {
     },
     /// A comment as other languages write it; the error is at what begins it.
     ForeignComment {
-        /// What begins it.
+        /// The text that begins it.
         written: SmolStr,
     },
     /// `/*` without `*/`.
@@ -100,7 +100,7 @@ pub enum SyntaxErrorKind {
     UnterminatedString,
 }
 
-/// What could be in a place, in a person's terms.
+/// Something that could be in a place, in a person's terms.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Expected {
     /// A certain word or sign.
@@ -123,25 +123,25 @@ pub enum Expected {
     Declaration,
 }
 
-/// What a number measures.
+/// The quantity that a number measures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Quantity {
     /// A wheel's radius.
     Radius,
-    /// How far to move.
+    /// The distance of a move.
     Distance,
-    /// How fast to move.
+    /// The speed of a move.
     Speed,
-    /// How far to turn.
+    /// The angle of a turn.
     Angle,
-    /// How long to wait.
+    /// The time of a wait.
     Time,
-    /// How often to repeat.
+    /// The number of rounds.
     Count,
 }
 
 impl Quantity {
-    /// What a person calls it, with its unit where it has only one.
+    /// Returns its name in messages, with its unit where it has only one.
     pub fn phrase(self) -> &'static str {
         match self {
             Self::Radius => "a radius in centimetres",
@@ -166,7 +166,7 @@ impl Quantity {
     }
 }
 
-/// What is where something else was expected.
+/// The token that is where something else was expected.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Found {
     /// The end of the entity.

@@ -54,7 +54,8 @@ fn push(text: &str, tokens: &mut Vec<Token>, token: TokenKind, span: Span) {
     tokens.push((token, span));
 }
 
-/// What no number follows, so that one right after it is meant to be a part of the name. (`move-4` is a move.)
+/// Returns whether a number right after the token is meant as a part of a name, as no number follows it. (`move-4` is a
+/// move.)
 fn may_begin_name(token: TokenKind) -> bool {
     let before_number = matches!(token, TokenKind::Wait | TokenKind::Repeat | TokenKind::Within);
     token.is_name() && !before_number || token.entity_kind().is_some()

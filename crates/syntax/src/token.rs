@@ -12,8 +12,8 @@ pub enum TokenKind {
     /// A name, also one escaped by `^`.
     #[regex(r"\^?[A-Za-z_][A-Za-z0-9_]*")]
     Name,
-    /// What someone took for a name: `left-wheel`, `räder`, `rover.left`. It is where a name does, and is one
-    /// mistake instead of a row of them.
+    /// Text that someone took for a name: `left-wheel`, `räder`, `rover.left`. It is allowed where a name is, and is
+    /// one mistake instead of a row of them.
     #[regex(r"\^?[\p{L}_][\p{L}\p{M}\p{N}_]*([-.'’][\p{L}_][\p{L}\p{M}\p{N}_]*)*", priority = 1)]
     MalformedName,
     /// Digits, perhaps with `-` before them.
@@ -292,7 +292,7 @@ impl TokenKind {
         Self::Within,
     ];
 
-    /// What can be where a name is wanted.
+    /// The tokens that can be where a name is expected.
     pub(crate) const NAMES: TokenSet =
         TokenSet::of(&[Self::Name, Self::MalformedName]).or(TokenSet::of(&Self::CONTEXTUAL));
 
@@ -323,7 +323,7 @@ impl TokenKind {
         Self::Slam,
     ]);
 
-    /// How the statement that an action's keyword begins is written; nothing for other tokens.
+    /// Returns examples of the statement that an action's keyword begins; none for other tokens.
     pub fn examples(self) -> &'static [&'static str] {
         match self {
             Self::Move => &["move 4.0 meters", "move 40 centimeters at 9.0"],
@@ -337,7 +337,7 @@ impl TokenKind {
         }
     }
 
-    /// Whether it begins an action.
+    /// Returns whether it begins an action.
     pub fn is_action(self) -> bool {
         Self::ACTIONS.contains(&self)
     }
@@ -347,7 +347,7 @@ impl TokenKind {
         Drive::from_word(self.spelling()?)
     }
 
-    /// How a keyword or sign is written; `None` for tokens whose text varies.
+    /// Returns the spelling of a keyword or sign; `None` for tokens whose text varies.
     pub fn spelling(self) -> Option<&'static str> {
         match self {
             Self::OpenBrace => Some("{"),
@@ -358,7 +358,7 @@ impl TokenKind {
         }
     }
 
-    /// Whether `written` may be a slip for this keyword.
+    /// Returns whether `written` may be a slip for this keyword.
     pub fn is_similar_to(self, written: &str) -> bool {
         self.spelling().is_some_and(|spelling| is_similar(written, spelling))
     }
@@ -369,17 +369,17 @@ impl TokenKind {
         KEYWORDS.iter().find(|(_, word)| *word == near).map(|(kind, _)| *kind)
     }
 
-    /// Whether it is a word that cannot be a name unless escaped by `^`.
+    /// Returns whether it is a word that cannot be a name unless escaped by `^`.
     pub fn is_keyword(self) -> bool {
         RESERVED.has(self)
     }
 
-    /// Whether it can be where a name is wanted.
+    /// Returns whether it can be where a name is expected.
     pub fn is_name(self) -> bool {
         Self::NAMES.has(self)
     }
 
-    /// Whether the parser passes over it.
+    /// Returns whether it is a comment, which the parser passes over.
     pub fn is_comment(self) -> bool {
         matches!(
             self,
@@ -387,12 +387,12 @@ impl TokenKind {
         )
     }
 
-    /// Whether it is a comment that takes the rest of its line.
+    /// Returns whether it is a comment that takes the rest of its line.
     pub fn ends_line(self) -> bool {
         matches!(self, Self::LineComment | Self::ForeignComment)
     }
 
-    /// Whether it is written where a number belongs.
+    /// Returns whether it is written where a number belongs.
     pub fn is_number(self) -> bool {
         matches!(self, Self::Integer | Self::Float | Self::Ipv4 | Self::MalformedNumber)
     }
@@ -433,7 +433,7 @@ impl EntityKind {
     pub const ALL: [Self; 6] =
         [Self::Wheel, Self::Sensor, Self::Ip, Self::Robot, Self::Movement, Self::Environment];
 
-    /// What a person calls one of them.
+    /// Returns its name in messages, without an article.
     pub fn noun(self) -> &'static str {
         match self {
             Self::Wheel => "wheel",
@@ -445,7 +445,7 @@ impl EntityKind {
         }
     }
 
-    /// How one is written, from end to end.
+    /// Returns its syntax, from end to end.
     pub fn shape(self) -> &'static str {
         match self {
             Self::Wheel => "wheel NAME with radius CENTIMETRES",
@@ -496,17 +496,17 @@ impl TokenSet {
         Self(self.0 & !other.0)
     }
 
-    /// What is in both.
+    /// Returns the tokens in both.
     pub const fn and(self, other: Self) -> Self {
         Self(self.0 & other.0)
     }
 
-    /// What is in either.
+    /// Returns the tokens in either.
     pub const fn or(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
-    /// Whether `token` is in it.
+    /// Returns whether `token` is in it.
     pub const fn has(self, token: TokenKind) -> bool {
         self.0 & (1 << token as u8) != 0
     }

@@ -17,7 +17,7 @@ const MAX_STEPS: usize = 40;
 /// A list of references that is being written.
 #[derive(Debug, Clone, Copy)]
 struct List {
-    /// Whether its references are apart by commas.
+    /// True if its references are separated by commas.
     commas: bool,
     /// One reference per line.
     broken: bool,
@@ -37,7 +37,7 @@ struct Layout<'a> {
     tokens: &'a [Token],
     item: &'a Item,
     is_movement: bool,
-    /// How many blocks of actions are open.
+    /// The number of open blocks of actions.
     depth: usize,
     list: Option<List>,
     hoisted: Hoisted,
@@ -86,7 +86,7 @@ impl Layout<'_> {
         }
     }
 
-    /// Whether comments between two neighbouring tokens become the first lines of the next block.
+    /// Returns whether comments between two neighbouring tokens become the first lines of the next block.
     fn hoists(&self, previous: usize, index: usize) -> bool {
         let is_else = |index: usize| self.tokens[index].0 == TokenKind::Else;
         let opens = self.tokens[index].0 == TokenKind::OpenBrace && !self.opens_condition(previous);
@@ -145,13 +145,14 @@ impl Layout<'_> {
         gap.write_inline(writer, &indent(self.depth + 1), glue);
     }
 
-    /// Whether a token outside lists begins a line: an action, or the end of a block.
+    /// Returns whether a token outside lists begins a line: an action, or the end of a block.
     fn begins_line(&self, previous: usize, index: usize) -> bool {
         let begins = self.begins_action(previous, index) || self.tokens[index].0 == TokenKind::CloseBrace;
         self.depth > 0 && (begins || self.tokens[previous].0 == TokenKind::OpenBrace)
     }
 
-    /// Whether a token outside lists begins an action. A word after `do` is a name, and an `if` after `else` goes on.
+    /// Returns whether a token outside lists begins an action. A word after `do` is a name, and an `if` after `else`
+    /// continues.
     fn begins_action(&self, previous: usize, index: usize) -> bool {
         let continues = match self.tokens[previous].0 {
             TokenKind::Do => !self.is_done(previous),
@@ -161,7 +162,7 @@ impl Layout<'_> {
         self.tokens[index].0.is_action() && !continues
     }
 
-    /// Whether the `do` at `index` is the name of a movement that is done, not the keyword.
+    /// Returns whether the `do` at `index` is the name of a movement that is done, not the keyword.
     fn is_done(&self, index: usize) -> bool {
         let earlier =
             self.tokens[self.item.first..index].iter().rev().filter(|(token, _)| !token.is_comment());
@@ -169,7 +170,7 @@ impl Layout<'_> {
         row % 2 == 1
     }
 
-    /// Whether a brace after the token at `previous` opens the list of a condition, not a block.
+    /// Returns whether a brace after the token at `previous` opens the list of a condition, not a block.
     fn opens_condition(&self, previous: usize) -> bool {
         self.depth > 0 && matches!(self.tokens[previous].0, TokenKind::Until | TokenKind::If)
     }
@@ -181,7 +182,7 @@ impl Layout<'_> {
         List { commas, broken, indent: writer.line_indent() }
     }
 
-    /// Whether a list can be on one line, together with what follows it up to the next place for a line break.
+    /// Returns whether a list fits on one line, together with the text after it up to the next place for a line break.
     fn fits(&self, column: usize, open: usize, commas: bool) -> bool {
         let mut column = column;
         let mut previous = open;

@@ -8,7 +8,7 @@ use std::ops::Range;
 use super::writer::{BLANKS, BYTE_ORDER_MARK, LINE_ENDS, Writer};
 use crate::{Span, Token};
 
-/// What is between two neighbouring tokens that are not comments.
+/// The text between two neighbouring tokens that are not comments.
 pub(super) struct Gap<'a> {
     text: &'a str,
     tokens: &'a [Token],
@@ -25,7 +25,7 @@ struct Group {
     lines: usize,
 }
 
-/// What becomes of blank lines.
+/// The treatment of blank lines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Blank {
     /// They go.
@@ -42,12 +42,12 @@ pub(super) struct Place<'a> {
     pub(super) indent: &'a str,
     /// Before the second token.
     pub(super) next_indent: &'a str,
-    /// Whether the first token opens something; a blank line after it is removed.
+    /// True if the first token opens something; a blank line after it is removed.
     pub(super) opens: bool,
-    /// Whether the second token closes something; a blank line before it goes.
+    /// True if the second token closes something; a blank line before it is removed.
     pub(super) closes: bool,
     pub(super) blank: Blank,
-    /// Whether comments on lines of their own have been written before it.
+    /// True if comments on lines of their own have been written before it.
     pub(super) hoisted: bool,
 }
 
@@ -97,7 +97,7 @@ impl<'a> Gap<'a> {
         (0..self.groups.len()).rev().take_while(attached).last().map(|index| self.groups[index].range.start)
     }
 
-    /// Whether the two tokens cannot share a line.
+    /// Returns whether the two tokens cannot share a line.
     pub(super) fn forces_break(&self) -> bool {
         self.groups.iter().enumerate().any(|(index, group)| {
             self.stands_alone(index)

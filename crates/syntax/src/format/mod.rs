@@ -19,9 +19,9 @@ use crate::{Parse, Span, Token, TokenKind, parse};
 /// A change of text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TextEdit {
-    /// What goes.
+    /// The text that is removed.
     pub span: Span,
-    /// What comes.
+    /// The text that is inserted.
     pub text: String,
 }
 

@@ -1,10 +1,10 @@
-//! What the layout treats as one: an entity, or a stretch of text that has to stay as it is.
+//! The units of the layout: entities, and stretches of text that have to stay as they are.
 
 use super::gap::Gap;
 use crate::ast::Entity;
 use crate::{EntityKind, Parse, Span, Token, TokenKind};
 
-/// What an item declares, as far as blank lines go.
+/// The kind of an item, as far as blank lines depend on it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum ItemKind {
     Import,
@@ -12,7 +12,7 @@ pub(super) enum ItemKind {
 }
 
 impl ItemKind {
-    /// Whether neighbours of this kind are on adjacent lines.
+    /// Returns whether neighbours of this kind are on adjacent lines.
     pub(super) fn stands_in_runs(self) -> bool {
         use EntityKind::{Ip, Sensor, Wheel};
         matches!(self, Self::Import | Self::Declaration(Wheel | Sensor | Ip))
@@ -28,7 +28,7 @@ pub(super) struct Item {
     pub(super) first_kind: Option<ItemKind>,
     /// The kind at its end, which differs only in stretches of several broken entities.
     pub(super) last_kind: Option<ItemKind>,
-    /// Whether it has to stay byte for byte as it is.
+    /// True if it has to stay byte for byte as it is.
     pub(super) broken: bool,
 }
 

@@ -442,7 +442,7 @@ fn stands(text: &str) -> Vec<(bool, bool)> {
         .collect()
 }
 
-/// What a layout must look like where nothing is broken.
+/// Checks the look of a layout where nothing is broken.
 fn check_looks(text: &str, formatted: &str) -> Result<(), TestCaseError> {
     let places = lex(text).into_iter().filter(|(token, _)| token.is_comment() && !has_blocks(text));
     for ((token, _), (before, after)) in places.zip(stands(text).into_iter().zip(stands(formatted))) {
@@ -465,7 +465,7 @@ fn has_blocks(text: &str) -> bool {
     lex(text).iter().any(|(token, _)| matches!(token, TokenKind::Repeat | TokenKind::If | TokenKind::Else))
 }
 
-/// What must hold for any text.
+/// Checks the properties that hold for any text.
 fn check_properties(text: &str) -> Result<(), TestCaseError> {
     let formatted = format(text);
     prop_assert_eq!(format(&formatted), formatted.clone(), "not idempotent");

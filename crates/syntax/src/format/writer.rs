@@ -13,9 +13,9 @@ pub(super) struct Writer<'a> {
     line_ending: &'static str,
     /// Everything before this byte is done.
     at: u32,
-    /// What is to be between `at` and the next token.
+    /// The text to insert between `at` and the next token.
     gap: String,
-    /// Whether anything is written yet.
+    /// True once anything is written.
     started: bool,
     /// Characters on the current line so far, the gap not counted.
     column: usize,
@@ -117,7 +117,7 @@ impl<'a> Writer<'a> {
         self.edits.push(joined);
     }
 
-    /// How many edits there are.
+    /// Returns the number of edits.
     pub(super) fn edits(&self) -> usize {
         self.edits.len()
     }
@@ -156,7 +156,7 @@ pub(super) const BLANKS: [char; 3] = [' ', '\t', '\x0c'];
 /// `\r\n` is one line end of two.
 pub(super) const LINE_ENDS: [char; 2] = ['\n', '\r'];
 
-/// How the first line that has something on it ends.
+/// Returns the line ending of the first line that is not blank.
 fn line_ending(text: &str) -> &'static str {
     let first = |text: &str| {
         let end = &text[text.find(LINE_ENDS)?..];

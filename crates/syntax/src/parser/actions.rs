@@ -25,10 +25,10 @@ const WITH: TokenSet = TokenSet::of(&[TokenKind::With]);
 const IN: TokenSet = TokenSet::of(&[TokenKind::In]);
 const IF: TokenSet = TokenSet::of(&[TokenKind::If]);
 
-/// What can follow an action.
+/// The tokens that can follow an action.
 const NEXT: TokenSet = ACTIONS.or(CLOSE);
 
-/// What can follow the angle of a turn.
+/// The tokens that can follow the angle of a turn.
 const TURN_CLAUSES: TokenSet = WITH.or(AT).or(IN).or(UNTIL);
 
 type Actions<'s> = Rule<'s, Vec<Action>>;
@@ -58,7 +58,7 @@ fn as_block<'s>(actions: impl Parser<'s, Input<'s>, Vec<Action>, Extra<'s>> + Cl
 
 /// One action; several where a block belongs to nothing that is known, and none where nothing was understood.
 fn action<'s>(block: &Rule<'s, Block>) -> Actions<'s> {
-    // What several rules have in common is built once: a key in a movement builds all of them anew.
+    // Rules that several others share are built once: a key typed in a movement builds all of them anew.
     let until = until(NEXT);
     let (waits, repeats) = (after_wait(&until), after_repeat(block));
     let condition_and_block = condition(OPEN.or(NEXT)).then(block.clone()).boxed();
@@ -118,7 +118,7 @@ pub(super) fn length<'s>(later: TokenSet) -> Rule<'s, Length> {
     number.then(slot(unit(), UNITS, later)).boxed()
 }
 
-/// How far a move goes.
+/// Parses the distance of a move.
 fn distance<'s>() -> Rule<'s, Length> {
     let later = AT.or(UNTIL).or(NEXT);
     let number = slot(number(Quantity::Distance), NUMBER, UNITS.or(later));

@@ -48,7 +48,7 @@ fn bare_sensors<'s>() -> impl Parser<'s, Input<'s>, References, Extra<'s>> + Clo
     let name = plain_name().and_is(one_in(word).not()).then_ignore(just(TokenKind::Comma).or_not());
     let names = name.repeated().at_least(1).collect::<Vec<_>>();
     let end = one_in(word).map_with(|_, extra: &mut MapExtra<'s, '_, Input<'s>, Extra<'s>>| extra.span());
-    // The doubled negation looks ahead without a trace: what is wrong with other lists is told by their own rule.
+    // The doubled negation looks ahead without a trace: mistakes in other lists are reported by their own rule.
     let ahead = names.clone().then(one_in(word)).not().not();
     ahead.ignore_then(names.map_with(|names, extra| (names, extra.span()))).then(end.rewind()).validate(
         |((names, span), end), _, emitter| {

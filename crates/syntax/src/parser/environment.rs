@@ -17,7 +17,7 @@ const CLOSE: TokenSet = TokenSet::of(&[TokenKind::CloseBrace]);
 const ROBOTS: TokenSet = TokenSet::of(&[TokenKind::Robots]);
 const MOVES: TokenSet = TokenSet::of(&[TokenKind::Moves]);
 
-/// What can follow the name and the ip.
+/// The tokens that can follow the name and the ip.
 const TAIL: TokenSet = HAS.or(OPEN).or(CLOSE).or(ROBOTS);
 
 /// `environment name with ip ip1 has { … } robots with { … } moves`

@@ -107,7 +107,7 @@ impl EntitySource<'_> {
         Span::new(place(start), place(end))
     }
 
-    /// Whether characters are inside text that was passed over: that is reported where it begins.
+    /// Returns whether characters are inside text that was passed over: that is reported where it begins.
     fn is_passed_over(&self, error: &SyntaxError) -> bool {
         let minor = matches!(
             error.kind,
@@ -204,8 +204,8 @@ impl EntitySource<'_> {
         })
     }
 
-    /// Whether the mistake at `index` has been reported otherwise: the token was taken for something, or something
-    /// that is no token is right before it.
+    /// Returns whether the mistake at `index` has been reported otherwise: the token was taken for something, or
+    /// something that is no token is right before it.
     fn is_consequence(&self, index: usize) -> bool {
         let here = self.significant.get(index).map(|(_, span)| *span);
         let taken = self.faults.iter().any(|fault| {

@@ -1,5 +1,5 @@
-//! What the rules expect in a place. Rules fail at almost every token that they read, each time with what they expected, so
-//! this is a set that is made without allocating.
+//! Expectations of the rules in a place. Rules fail at almost every token that they read, each time with their
+//! expectations, so this is a set that is made without allocating.
 
 use crate::{EntityKind, Expected, KEYWORDS, Quantity, TokenKind, TokenSet};
 
@@ -63,7 +63,7 @@ fn bit(expected: Expected) -> Option<u32> {
 }
 
 impl Expectation {
-    /// What is in either.
+    /// Returns the union of the two.
     pub(super) fn or(self, other: Self) -> Self {
         Self { words: self.words.or(other.words), others: self.others | other.others }
     }

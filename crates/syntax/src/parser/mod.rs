@@ -31,15 +31,15 @@ type Input<'s> = MappedInput<'s, TokenKind, Span, &'s [Token]>;
 type Extra<'s> = extra::Full<Fault, SimpleState<Source<'s>>, ()>;
 type Rule<'s, O> = Boxed<'s, 's, Input<'s>, O, Extra<'s>>;
 
-/// What the rules know of an entity beside its tokens.
+/// The context of an entity that the rules see beside its tokens.
 #[derive(Debug, Clone, Copy)]
 struct Source<'s> {
     text: &'s str,
-    /// How many braces are closed in it, compared with those that are opened.
+    /// The number of its closing braces, compared with that of its opening ones.
     closed: Ordering,
 }
 
-/// What one piece of a file turned out to be.
+/// The result of parsing one piece of a file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parse {
     /// The tree; `None` for the text before the first entity.
@@ -53,8 +53,8 @@ pub struct Parse {
     pub skipped_names: Vec<SmolStr>,
 }
 
-/// How many pieces are read with the same rules: so many that building those hardly counts, and so few that what is
-/// kept beside them stays small.
+/// The number of pieces that are read with the same rules: so many that building those hardly counts, and so few that
+/// the data kept beside them stays small.
 const BATCH: usize = 512;
 
 /// Cuts and parses a whole text: each piece with the range it covers. The pieces tile the text; spans inside a piece
@@ -92,8 +92,8 @@ pub fn parse_cut(text: &str, tokens: &[Token], starts: &[usize], mut emit: impl 
     }
 }
 
-/// What can follow these tokens of one entity, each kind of thing once; their spans are relative to `text`. This is
-/// the grammar's own answer: the parser is asked what it expects at a token that fits nowhere.
+/// Returns all that can follow these tokens of one entity, each kind of thing once; their spans are relative to `text`.
+/// This is the grammar's own answer: the parser is asked what it expects at a token that fits nowhere.
 pub fn expected_after(text: &str, tokens: &[Token]) -> Vec<Expected> {
     let mut significant = without_trivia(tokens);
     if significant.is_empty() {
@@ -115,7 +115,7 @@ pub fn expected_after(text: &str, tokens: &[Token]) -> Vec<Expected> {
     expected
 }
 
-/// Whether `significant`, the last of which is the cursor, end in a list that must not be empty and still is.
+/// Returns whether `significant`, the last of which is the cursor, end in a list that must not be empty and still is.
 fn must_not_close(text: &str, significant: &[Token]) -> bool {
     let [before @ .., (TokenKind::OpenBrace, open), (TokenKind::Cursor, cursor)] = significant else {
         return false;
@@ -167,7 +167,7 @@ fn tokens_to_parse(piece: &str, tokens: &[Token]) -> Option<Vec<Token>> {
     })
 }
 
-/// What is inside the blocks that are deeper than [`MAX_DEPTH`]: the parser calls itself once per block, and its stack ends.
+/// Returns the blocks that are deeper than [`MAX_DEPTH`]: the parser calls itself once per block, and its stack ends.
 fn deep_blocks(tokens: &[Token]) -> Vec<Span> {
     let (mut depth, mut inside, mut blocks) = (0_usize, None, Vec::new());
     for (token, span) in tokens {

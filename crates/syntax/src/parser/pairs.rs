@@ -47,7 +47,7 @@ fn misplaced(stray: &SyntaxError, gap: &SyntaxError, tokens: &[Token]) -> Option
     expected.iter().any(|expected| fills(*token, *expected)).then_some(SyntaxError { span: stray.span, kind })
 }
 
-/// Whether a token is what is missing.
+/// Returns whether a token is the missing one.
 fn fills(token: TokenKind, expected: Expected) -> bool {
     match expected {
         Expected::Word(word) => {

@@ -19,7 +19,7 @@ const CLOSE: TokenSet = TokenSet::of(&[TokenKind::CloseBrace]);
 const WHEELS: TokenSet = TokenSet::of(&[TokenKind::Wheels]);
 const SENSORS: TokenSet = TokenSet::of(&[TokenKind::Sensors]);
 
-/// What can follow the port clause.
+/// The tokens that can follow the port clause.
 const TAIL: TokenSet = HAS.or(OPEN).or(CLOSE).or(WHEELS);
 
 /// `robot name type tw with port 23000 has { … } wheels with sensors { … }`

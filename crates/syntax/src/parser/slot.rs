@@ -1,4 +1,5 @@
-//! How every rule recovers: a program is a row of slots, each of which is filled, empty, or holds something else.
+//! Error recovery, the same in every rule: a program is a row of slots, each of which is filled, empty, or holds
+//! something else.
 //!
 //! A slot never fails. Where its content is absent it reports one fault, passes over what fits nowhere up to a token
 //! that the slot itself or something after it can begin with, and lets the rest of the entity go on.
@@ -18,7 +19,7 @@ use super::{Extra, Input, Rule};
 use crate::ast::{Name, Number, References};
 use crate::{EntityKind, Expected, Quantity, Span, TokenKind, TokenSet};
 
-/// What a rule reports while it runs; [`super::errors`] makes errors of it.
+/// A fault that a rule reports while it runs; [`super::errors`] makes errors of it.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Fault {
     /// Something else was expected at this token (or at the end).
@@ -38,7 +39,7 @@ pub(super) enum Fault {
 }
 
 impl Fault {
-    /// What a rule says that only looked ahead.
+    /// The fault of a rule that only looked ahead.
     fn nothing(at: Span) -> Self {
         Self::Expected { at, expected: Expectation::default() }
     }
@@ -285,7 +286,7 @@ pub(super) fn nothing_more<'s>() -> Rule<'s, ()> {
 /// Every token that may be passed over.
 const ANY: TokenSet = TokenSet::all_but(TokenKind::Cursor);
 
-/// What is never taken for a name.
+/// The tokens that are never taken for a name.
 const SIGNS: TokenSet =
     TokenSet::of(&[TokenKind::CloseBrace, TokenKind::Comma, TokenKind::Colon, TokenKind::String]).or(NUMBER);
 

@@ -503,7 +503,7 @@ fn one_mistake_in_a_block() {
     }
 }
 
-/// What somebody is writing right before the brace of the movement or of a block, which stays what it is.
+/// An action that somebody is writing right before the brace of the movement or of a block, which stays its brace.
 #[test]
 fn an_action_that_is_begun_takes_no_brace() {
     for begun in [
