@@ -1,4 +1,4 @@
-//! What is where in a text, even if it is half typed and not TOML yet.
+//! The context of a cursor in a text, even if it is half typed and not TOML yet.
 
 use std::borrow::Cow;
 
@@ -8,7 +8,7 @@ use toml_parser::parser::{Event, EventKind, RecursionGuard, parse_document};
 
 use crate::toml::span;
 
-/// How deep values may be nested; what is deeper is ignored.
+/// The maximum depth of nested values; deeper ones are ignored.
 const DEEPEST: u32 = 16;
 
 /// A part of a name, in a key or in the header of a table.
@@ -22,38 +22,38 @@ pub struct NamePart {
     pub section: usize,
 }
 
-/// What can be typed at an offset.
+/// The word at an offset, and its role.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CursorContext {
     /// The word there, which is being typed or would be replaced.
     pub word: Span,
     /// Which section of the text it is in; each but the first begins with a header.
     pub section: usize,
-    /// What the word is.
+    /// The role of the word.
     pub slot: Slot,
 }
 
-/// What a word is.
+/// The role of a word.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Slot {
     /// A part of a table's name in its header.
     Table {
         /// The parts before it, each with a dot after it.
         outer: String,
-        /// Whether more parts follow.
+        /// True if more parts follow.
         has_more: bool,
-        /// Whether the header has two brackets, as tables have that can appear any number of times.
+        /// True if the header has two brackets, as tables have that can appear any number of times.
         is_each: bool,
-        /// Whether the closing brackets are there.
+        /// True if the closing brackets are there.
         is_closed: bool,
     },
     /// A key.
     Key {
         /// The table it is in, with a dot after it; empty outside of tables.
         table: String,
-        /// Whether a `=` follows.
+        /// True if a `=` follows.
         has_value: bool,
-        /// Whether it is the first word of its line, where a table could begin.
+        /// True if it is the first word of its line, where a table could begin.
         begins_line: bool,
     },
     /// The value of a key.
@@ -78,7 +78,7 @@ pub fn name_parts(text: &str) -> Vec<NamePart> {
     parts
 }
 
-/// What can be typed at an offset in bytes; `None` where neither keys nor values can be.
+/// Returns the context at an offset in bytes; `None` where neither keys nor values can be.
 pub fn cursor_context(text: &str, offset: u32) -> Option<CursorContext> {
     let (index, section) =
         sections(text).into_iter().enumerate().rfind(|(_, section)| section.start <= offset)?;
@@ -169,7 +169,7 @@ fn is_header(line: &str) -> bool {
     !inside.starts_with(|first: char| first.is_ascii_digit() || matches!(first, '[' | '-' | '+' | '.'))
 }
 
-/// What the next word is.
+/// The role of the next word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Stage {
     Header,
@@ -188,11 +188,11 @@ struct Reader<'t> {
     outer: Vec<Vec<String>>,
     /// The parts of the name that is being read.
     parts: Vec<String>,
-    /// Whether the next word can be another part.
+    /// True if the next word can be another part.
     wants_part: bool,
-    /// How many lists are open.
+    /// The number of open lists.
     lists: usize,
-    /// Whether the header has two brackets.
+    /// True if the header has two brackets.
     is_each: bool,
 }
 
@@ -294,7 +294,7 @@ mod tests {
 
     use super::*;
 
-    /// What is at each `$0`, a line each.
+    /// Checks the context at each `$0`, a line each.
     fn check(fixtures: &[&str], expected: &Expect) {
         let mut out = String::new();
         for fixture in fixtures {

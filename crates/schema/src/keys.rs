@@ -1,4 +1,4 @@
-//! What a list of keys consists of.
+//! The parts of a list of keys.
 
 use crate::Values;
 
@@ -8,7 +8,7 @@ pub const NAME: &str = "NAME";
 /// Everything that a kind of file can contain.
 #[derive(Debug)]
 pub struct Schema {
-    /// What an entry is called in messages: `setting`.
+    /// The name of an entry in messages: `setting`.
     pub noun: &'static str,
     /// All tables. The keys outside of tables are in one without a name.
     pub tables: &'static [Table],
@@ -23,11 +23,11 @@ pub struct Schema {
 pub struct Table {
     /// Its name, with [`NAME`] in place of names of the program.
     pub name: &'static str,
-    /// How often it can appear, and what its keys are.
+    /// The kind of table: it says how often the table can appear.
     pub kind: TableKind,
-    /// What it is about, in Markdown.
+    /// A description, in Markdown.
     pub summary: &'static str,
-    /// What can be set in it.
+    /// The keys that can be set in it.
     pub keys: &'static [Key],
 }
 
@@ -40,18 +40,18 @@ pub enum TableKind {
     Each,
     /// Appears once for each name of its kind: `[robots.rover]`.
     Named {
-        /// What the names belong to.
+        /// The kind of things that the names belong to.
         owner: &'static str,
-        /// What each is the name of.
+        /// The kind of things that are named.
         noun: &'static str,
     },
     /// Appears once; its keys come from a list that is documented elsewhere.
     Catalogue {
-        /// What a key is called in messages.
+        /// The name of a key in messages.
         noun: &'static str,
-        /// What the table can be set to, in Markdown.
+        /// The allowed values of the table, in Markdown.
         words: &'static str,
-        /// What applies to keys that are not set, in Markdown.
+        /// The default of keys that are not set, in Markdown.
         default: &'static str,
         /// Where to find the keys.
         help: &'static str,
@@ -63,15 +63,15 @@ pub enum TableKind {
 pub struct Key {
     /// Its name.
     pub name: &'static str,
-    /// What it can be set to.
+    /// The allowed values.
     pub values: Values,
-    /// Whether its table makes no sense without it.
+    /// True if its table makes no sense without it.
     pub required: bool,
     /// A key of the same table that can stand in for it, if it is required.
     pub unless: Option<&'static str>,
-    /// What it means, in Markdown.
+    /// Its meaning, in Markdown.
     pub summary: &'static str,
-    /// What applies if it is not set, in Markdown; a value in backticks, or words.
+    /// The default, in Markdown; a value in backticks, or words.
     pub default: &'static str,
     /// A value that is not the default, in the syntax that TOML and JSON share.
     pub example: &'static str,
@@ -127,7 +127,7 @@ impl Table {
         self.name.split('.').filter(|part| !part.is_empty()).collect()
     }
 
-    /// How a file begins it, with names in place of its placeholders.
+    /// Returns the header that begins it in a file, with names in place of its placeholders.
     pub fn header(&self, name: &str) -> String {
         if self.kind == TableKind::Each { format!("[[{name}]]") } else { format!("[{name}]") }
     }
@@ -137,14 +137,14 @@ impl Table {
         self.keys.iter().find(|key| key.name == name)
     }
 
-    /// Whether it is the table of these parts of a name.
+    /// Returns whether it is the table of these parts of a name.
     fn is_at(&self, path: &[&str]) -> bool {
         let parts = self.parts();
         parts.len() == path.len() && parts.iter().zip(path).all(|(part, name)| *part == NAME || part == name)
     }
 }
 
-/// What a name in a file refers to.
+/// The table or key that a name in a file refers to.
 #[derive(Debug, Clone, Copy)]
 pub enum Item {
     /// A table, or the table of all names inside of it.
@@ -164,7 +164,7 @@ impl Schema {
         self.tables.iter().find(|table| table.is_at(path))
     }
 
-    /// What these parts of a name in a file refer to.
+    /// Returns the item that these parts of a name in a file refer to.
     pub fn find(&self, path: &[&str]) -> Option<Item> {
         let (last, outer) = path.split_last()?;
         let key = || self.table_at(outer)?.key(last).map(Item::Key);
@@ -172,7 +172,7 @@ impl Schema {
         self.table_at(path).map(Item::Table).or_else(key).or_else(named)
     }
 
-    /// Whether a name from the list is that of a table or begins one.
+    /// Returns whether a name from the list is that of a table or begins one.
     pub(crate) fn has(&self, name: &str) -> bool {
         self.first_in(name).is_some()
     }

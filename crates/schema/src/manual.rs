@@ -1,4 +1,4 @@
-//! What is published of a list of keys: the pages of the documentation, the JSON schema, and what an editor shows.
+//! Publications of a list of keys: the pages of the documentation, the JSON schema, and the texts that an editor shows.
 
 use serde_json::{Value, json};
 
@@ -67,7 +67,7 @@ impl Schema {
 }
 
 impl Table {
-    /// What an editor shows of it, in Markdown.
+    /// Returns the text that an editor shows for it, in Markdown.
     pub fn markdown(&self) -> String {
         let (header, summary) = (self.header(self.name), self.summary);
         let lines = self.keys.iter().map(|key| format!("* `{}`: {}\n", key.name, key.summary));
@@ -101,7 +101,7 @@ impl Table {
 }
 
 impl Key {
-    /// What an editor shows of it, in Markdown.
+    /// Returns the text that an editor shows for it, in Markdown.
     pub fn markdown(&self) -> String {
         let default = match self.requirement() {
             Some(required) => required.replacen('r', "R", 1),
@@ -116,7 +116,7 @@ impl Key {
         format!("**`{name}`**: {words}\n\n{}\n{default}\n{example}", self.description())
     }
 
-    /// What it does, and what its values mean.
+    /// Returns a description of it and of its values.
     fn description(&self) -> String {
         let mut out = format!("{}\n", self.summary);
         if let Values::Words(words) = self.values {

@@ -1,4 +1,4 @@
-//! What is wrong with a file.
+//! The problems of a file.
 
 use pydslrep_text::Span;
 
@@ -11,11 +11,11 @@ pub struct Problem {
     pub key: String,
     /// Where it is in the TOML text; `None` for settings from an editor.
     pub span: Option<Span>,
-    /// What is wrong, in one sentence that names the key.
+    /// The problem, in one sentence that names the key.
     pub message: String,
-    /// What to do.
+    /// The remedy.
     pub help: Option<String>,
-    /// What probably belongs in place of the text at `span`.
+    /// The text that probably belongs in place of that at `span`.
     pub replacement: Option<String>,
 }
 

@@ -8,12 +8,12 @@ use crate::toml::{Entry, Node, Value, from_json, parse};
 use crate::values::{Refusal, numbers, rows};
 use crate::{Problem, ProblemKind, as_key};
 
-/// What a file contains.
+/// The contents of a file.
 #[derive(Debug, Default)]
 pub struct Contents {
     /// Its tables; those inside of others after them.
     pub sections: Vec<Section>,
-    /// What is wrong with it, in the order of the text.
+    /// Its problems, in the order of the text.
     pub problems: Vec<Problem>,
 }
 
@@ -24,13 +24,13 @@ pub struct Section {
     pub table: &'static Table,
     /// Its name in the file.
     pub written: String,
-    /// What is in place of the placeholders of the table's name.
+    /// The names in place of the placeholders of the table's name.
     pub names: Vec<String>,
-    /// How many of its kind are before it, among those that appear any number of times.
+    /// The number of its kind before it, among those that appear any number of times.
     pub index: usize,
     /// Where its name is; `None` in JSON and for the keys outside of tables.
     pub name_span: Option<Span>,
-    /// Whether it has all required keys.
+    /// True if it has all required keys.
     pub is_complete: bool,
     values: Vec<(&'static str, Value, Option<Span>)>,
     /// The keys whose values are wrong.
@@ -48,7 +48,7 @@ impl Section {
         self.values.iter().find(|(known, ..)| *known == key).and_then(|(_, _, span)| *span)
     }
 
-    /// Whether a key is true.
+    /// Returns the value of a key that is true or false.
     pub fn flag(&self, key: &str) -> Option<bool> {
         self.get(key)?.flag()
     }
@@ -85,7 +85,7 @@ impl Section {
         if let Value::List(nodes) = self.get(key)? { nodes.get(index)?.span } else { None }
     }
 
-    /// Whether a key is set to something that is wrong.
+    /// Returns whether a key has a wrong value.
     pub fn is_wrong(&self, key: &str) -> bool {
         self.wrong.contains(&key)
     }
@@ -130,9 +130,9 @@ struct Location {
     name: String,
     /// The name in the file.
     written: String,
-    /// What is in place of the placeholders.
+    /// The names in place of the placeholders.
     names: Vec<String>,
-    /// How many tables of this name are before this one.
+    /// The number of tables of this name before this one.
     index: usize,
 }
 
@@ -148,7 +148,7 @@ impl Reader<'_> {
         let kind = self.schema.table(&at.name).map_or(TableKind::Once, |table| table.kind);
         match &node.value {
             Value::Nothing => {}
-            // What Lua makes of an empty table.
+            // Lua writes an empty table so.
             Value::List(nodes) if nodes.is_empty() => {}
             Value::Table(entries) if kind != TableKind::Each => {
                 self.table(at, name_span, node.span, entries);

@@ -1,4 +1,4 @@
-//! What an unknown word may have been meant to be.
+//! Suggestions for unknown words.
 
 use pydslrep_text::closest;
 

@@ -44,7 +44,7 @@ pub struct Entry {
     pub key: String,
     /// Where the key is; `None` in JSON.
     pub key_span: Option<Span>,
-    /// What it is set to.
+    /// Its value.
     pub node: Node,
 }
 
@@ -170,7 +170,7 @@ fn json_value(value: &serde_json::Value, depth: usize) -> Value {
     }
 }
 
-/// What the library found, in words for people who may never have heard of TOML.
+/// Returns the library's error, in words for people who may never have heard of TOML.
 fn invalid_toml(text: &str, noun: &str, error: &Error) -> Problem {
     let span = error.span().map_or(Span::default(), self::span);
     let (what, expected) = match error.message().split_once(", expected ") {

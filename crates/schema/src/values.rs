@@ -1,4 +1,4 @@
-//! What a key can be set to, and how a value is checked.
+//! The allowed values of a key, and the check of a value.
 
 use serde_json::json;
 
@@ -6,7 +6,7 @@ use crate::keys::{Key, Schema};
 use crate::suggestions::{did_you_mean, either, suggestions};
 use crate::toml::{Node, Value};
 
-/// What a key can be set to. Most say first what is expected, in Markdown.
+/// The allowed values of a key. Most variants begin with the expected value, in Markdown.
 #[derive(Debug, Clone, Copy)]
 pub enum Values {
     /// `true` or `false`.
@@ -28,7 +28,7 @@ pub enum Values {
 pub struct Word {
     /// The word.
     pub word: &'static str,
-    /// What it means.
+    /// Its meaning.
     pub summary: &'static str,
 }
 
@@ -37,11 +37,11 @@ pub struct Word {
 pub struct Range {
     /// The least one, or what all are above.
     pub min: f64,
-    /// Whether `min` itself is left out.
+    /// True if `min` itself is left out.
     pub is_above: bool,
     /// The greatest one.
     pub max: f64,
-    /// Whether only whole numbers are allowed.
+    /// True if only whole numbers are allowed.
     pub is_whole: bool,
 }
 
@@ -82,9 +82,9 @@ fn whole(limit: f64) -> serde_json::Value {
 pub struct Refusal {
     /// Follows the key in the message.
     pub message: String,
-    /// What to do.
+    /// The remedy.
     pub help: Option<String>,
-    /// What to put in place of the value.
+    /// The text to put in place of the value.
     pub replacement: Option<String>,
 }
 
@@ -98,7 +98,7 @@ impl Values {
     /// A number above zero.
     pub const ABOVE_ZERO: Self = Self::Number("a number above zero", Range::ABOVE_ZERO);
 
-    /// What is expected, in Markdown.
+    /// Returns the expected value, in Markdown.
     pub fn words(&self) -> String {
         match self {
             Self::Flag => "`true` or `false`".to_owned(),
@@ -110,7 +110,7 @@ impl Values {
         }
     }
 
-    /// Whether values are in quotes.
+    /// Returns whether values are in quotes.
     pub fn is_quoted(&self) -> bool {
         matches!(self, Self::Words(_) | Self::Text(..))
     }
