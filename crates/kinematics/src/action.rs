@@ -1,8 +1,8 @@
-//! What a robot does, one action at a time, and how it drives that.
+//! The actions of a robot, and the way it drives each.
 
 use crate::{Model, PerWheel, Pose, SpeedProfile, Turning, Twist, motion};
 
-/// What a robot is to do next, in numbers.
+/// An action of a robot, in numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Action {
     /// Straight ahead along the heading.
@@ -27,7 +27,7 @@ pub enum Action {
         radius: f64,
         /// Rim speed of the fastest wheel in metres per second, above zero.
         speed: f64,
-        /// Whether it drives backwards.
+        /// True if it drives backwards.
         reverse: bool,
     },
     /// Stands still.
@@ -39,7 +39,7 @@ pub enum Action {
     Unknown,
 }
 
-/// What a leg of a plan is made of.
+/// The kind of a leg of a plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LegKind {
     /// The robot drives, from rest to rest.
@@ -51,7 +51,7 @@ pub enum LegKind {
     Whole,
 }
 
-/// How an action is driven, wherever it begins.
+/// The course of an action, independent of where it begins.
 #[derive(Debug, Clone)]
 pub(crate) struct Course {
     pub(crate) kind: LegKind,

@@ -51,7 +51,7 @@ impl Place {
         self.0.as_ref().map_or(&[], |nested| &nested.rounds)
     }
 
-    /// How many rounds each of those repetitions has.
+    /// Returns the number of rounds of each of those repetitions.
     pub fn counts(&self) -> &[u32] {
         self.0.as_ref().map_or(&[], |nested| &nested.counts)
     }
@@ -69,7 +69,7 @@ pub struct Leg {
     pub index: ActionIndex,
     /// In which round of what, called by whom.
     pub place: Place,
-    /// What it is made of.
+    /// Its kind.
     pub kind: LegKind,
     /// The pose it starts from.
     pub from: Pose,
@@ -77,7 +77,7 @@ pub struct Leg {
     pub to: Pose,
     /// When it starts, seconds; `None` when some earlier action takes an unknown time.
     pub start: Option<f64>,
-    /// How long it takes, seconds, with ramps and [`crate::motion::REST`].
+    /// Its duration, seconds, with ramps and [`crate::motion::REST`].
     pub duration: f64,
     /// Wheel rates at the highest speed it reaches, rad/s, in the order of the robot's wheels; none for [`LegKind::Whole`].
     pub rates: PerWheel,

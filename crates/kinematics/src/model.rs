@@ -6,7 +6,7 @@ use pydslrep_robots::{Drive, WheelPlace};
 
 use crate::{PerWheel, Twist};
 
-/// How far apart a robot's wheels are.
+/// The distances between a robot's wheels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Geometry {
     /// Distance between left and right wheels (d of equations 1 to 6), metres.
@@ -39,7 +39,7 @@ pub struct Model {
     turning: Turning,
 }
 
-/// What can be set on a robot, or is: as many of each as its model says ([`Model::settable`]).
+/// The rates and angles that are set on a robot, or measured: as many of each as its model says ([`Model::settable`]).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Setting {
     /// The rates of its wheels, rad/s, in the order of its type.
@@ -55,7 +55,7 @@ impl Setting {
     }
 }
 
-/// How many numbers of each kind a model can set.
+/// The number of rates and of angles that a model can set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Settable {
     /// Rates of wheels.
@@ -64,7 +64,7 @@ pub struct Settable {
     pub steering: usize,
 }
 
-/// How a robot turns that is told nothing but an angle.
+/// The way in which a robot turns if nothing but an angle is given.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Turning {
     /// About its own middle.
@@ -92,16 +92,16 @@ impl Turning {
 pub enum ModelError {
     /// The layout has another number of wheels than there are radii.
     WheelCount {
-        /// How many the layout has.
+        /// The number of wheels of the layout.
         expected: usize,
-        /// How many radii were given.
+        /// The number of radii given.
         found: usize,
     },
     /// A length or factor is not a finite number above zero.
     NotPositive {
         /// Which one.
         what: &'static str,
-        /// What it was.
+        /// The invalid value.
         value: f64,
     },
 }
@@ -169,17 +169,17 @@ impl Model {
         &self.radii
     }
 
-    /// How many rates and angles it can set.
+    /// Returns the number of rates and of angles that it can set.
     pub fn settable(&self) -> Settable {
         Settable { rates: self.radii.len(), steering: 0 }
     }
 
-    /// How it turns.
+    /// Returns the way in which it turns.
     pub fn turning(&self) -> Turning {
         self.turning
     }
 
-    /// What to set for a twist.
+    /// Returns the setting for a twist.
     ///
     /// Rim speeds are v ± ω d/2 (equations 1 to 6 of the article), for mecanum wheels lf = vx − vy − Kω,
     /// rf = vx + vy + Kω, lr = vx + vy − Kω, rr = vx − vy + Kω with K = (wheelbase + track)/2 (Lynch and Park,

@@ -19,14 +19,14 @@ pub struct RobotPath {
     pub start: Pose,
     /// The drive of each action up to the first unknown one, in order.
     pub legs: Vec<Leg>,
-    /// Whether more actions are known than are listed in `legs`.
+    /// True if more actions are known than are listed in `legs`.
     pub truncated: bool,
     /// The action whose outcome is unknown and, with it, every later pose of this robot.
     pub unknown_after: Option<ActionIndex>,
     /// In which rounds and calls that action is.
     pub unknown_place: Place,
-    /// What the robot may do there, as far as that has a bound: the action up to its bound, or each way of a branch up to its
-    /// own first unknown action, and that one to its bound. All begin where the known path ends.
+    /// The possible drives from there, as far as they have a bound: the action up to its bound, or each way of a branch
+    /// up to its own first unknown action, and that one to its bound. All begin where the known path ends.
     pub possible: Vec<Vec<Leg>>,
     pub(crate) end: Pose,
 }

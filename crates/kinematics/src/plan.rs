@@ -16,7 +16,7 @@ pub const MOST_ACTIONS: u64 = 100_000;
 pub struct Run {
     /// Which robot.
     pub robot: usize,
-    /// What it does, in order.
+    /// Its actions, in order.
     pub actions: Vec<Action>,
 }
 
@@ -39,7 +39,7 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Whether it has more actions than it lists.
+    /// Returns whether it has more actions than it lists.
     pub fn is_truncated(&self) -> bool {
         self.robots.iter().any(|path| path.truncated)
     }
@@ -168,7 +168,7 @@ pub fn plan_schedule(
     Ok(Plan { robots: walks.into_iter().map(Walk::into_path).collect(), duration: clock })
 }
 
-/// What each movement comes to: pairs of a robot and its steps. One of a robot without a model comes to nothing.
+/// Returns the block of each movement, given as a robot and its steps. That of a robot without a model is empty.
 fn blocks(movements: &[(usize, &[Step])], models: &[&Model]) -> Vec<Block> {
     let mut blocks: Vec<Block> = Vec::with_capacity(movements.len());
     for (robot, steps) in movements {
@@ -182,8 +182,8 @@ fn blocks(movements: &[(usize, &[Step])], models: &[&Model]) -> Vec<Block> {
     blocks
 }
 
-/// How many actions of each robot are listed, given how many it has: all of them if there is room; otherwise who has few may
-/// list them, and the others alike.
+/// Returns the number of actions to list of each robot, given how many it has: all of them if there is room; otherwise
+/// robots with few may list them, and the others get equal shares.
 fn shares(wanted: &[u64]) -> Vec<u64> {
     let mut order: Vec<usize> = (0..wanted.len()).collect();
     order.sort_by_key(|&robot| wanted[robot]);

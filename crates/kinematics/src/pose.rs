@@ -13,7 +13,7 @@ pub struct Pose {
     pub theta: f64,
 }
 
-/// How a body moves, in its own frame.
+/// The velocity of a body, in its own frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Twist {
     /// Forward speed, metres per second.

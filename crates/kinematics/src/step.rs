@@ -1,4 +1,4 @@
-//! What a movement consists of: actions, and statements with actions inside.
+//! The statements of a movement: actions, and statements with actions inside.
 
 use crate::Action;
 
@@ -7,11 +7,11 @@ use crate::Action;
 pub struct Step {
     /// Its place in its movement, from 0, in text order; statements with blocks count, and so do those inside.
     pub number: usize,
-    /// What it does.
+    /// Its kind.
     pub kind: StepKind,
 }
 
-/// What a statement does.
+/// The kind of a statement.
 #[derive(Debug, Clone, PartialEq)]
 pub enum StepKind {
     /// An action.
@@ -23,9 +23,9 @@ pub enum StepKind {
     },
     /// Its body, so many times.
     Repeat {
-        /// How many times.
+        /// The number of rounds.
         count: u32,
-        /// What is repeated.
+        /// The repeated steps.
         body: Vec<Step>,
     },
     /// One of several ways; the world decides which. A way that does nothing is empty. A chain of `else if` is one step with
@@ -34,7 +34,7 @@ pub enum StepKind {
         /// The ways.
         ways: Vec<Vec<Step>>,
     },
-    /// What another movement of the same robot does.
+    /// The steps of another movement of the same robot.
     Call {
         /// Which one, by the list that the plan is made with. Nobody can plan a call of a movement that is not listed before
         /// the one that calls it: its end is unknown.
@@ -42,12 +42,12 @@ pub enum StepKind {
     },
 }
 
-/// What a robot can be told to do.
+/// A movement of a robot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Movement {
     /// Which robot.
     pub robot: usize,
-    /// What it does, in order.
+    /// Its steps, in order.
     pub steps: Vec<Step>,
 }
 

@@ -1,4 +1,4 @@
-//! What a sequence of steps comes to, without a look at every round.
+//! Summaries of sequences of steps, without a look at every round.
 
 use crate::block::Block;
 use crate::{Model, Pose, Step, angle_between};
@@ -39,7 +39,7 @@ impl Motion {
         Self { change, seconds: self.seconds * f64::from(count) }
     }
 
-    /// Whether both end at the same pose after the same time, within 1e-9 m, rad and s.
+    /// Returns whether both end at the same pose after the same time, within 1e-9 m, rad and s.
     pub fn ends_like(&self, other: &Self) -> bool {
         self.change.distance(&other.change) <= ALIKE
             && angle_between(self.change.theta, other.change.theta).abs() <= ALIKE
@@ -47,12 +47,12 @@ impl Motion {
     }
 }
 
-/// What a sequence of steps comes to.
+/// The summary of a sequence of steps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Summary {
     /// `None` if only the world decides where or when it ends.
     pub motion: Option<Motion>,
-    /// How many entries it has in a plan, rounds and calls unrolled.
+    /// The number of its entries in a plan, rounds and calls unrolled.
     pub entries: u64,
 }
 

@@ -1,12 +1,12 @@
-//! What wheels that are dragged over the floor make of a robot.
+//! The motion of a robot whose wheels are dragged over the floor.
 
 use nalgebra::{Matrix3, SMatrix, Vector2, Vector3};
 use pydslrep_robots::{Drive, MAX_WHEELS, WheelPlace};
 
 use crate::{Geometry, Twist};
 
-/// How a robot moves when its wheels turn, with all that they are dragged across the floor. Where [`crate::Model`] says
-/// how a robot should move, this is about how it does.
+/// The relation between the rates of a robot's wheels and its motion when they are dragged across the floor.
+/// [`crate::Model`] says how a robot should move; this says how it does.
 ///
 /// Each wheel touches the floor in a point. What that point slips over the floor is resisted along the wheel and, by a
 /// share of it, across: the lateral friction, 1 for a rubber tyre. Mecanum wheels resist along their rollers' axes and, as far as
@@ -50,7 +50,7 @@ impl Traction {
     }
 }
 
-/// How much wider a skid-steered robot seems when it turns; 1 for others, whose wheels follow.
+/// Returns the factor by which a skid-steered robot seems wider when it turns; 1 for others, whose wheels follow.
 ///
 /// Plans and scripts take its track to be wider by this factor; scripts compute it from where they find the wheels, with
 /// the friction of its type (`python/pydslrep_runtime/drives.py`).

@@ -20,15 +20,15 @@ pub(crate) struct Walk<'p> {
     path: RobotPath,
     /// When it ends, seconds, as far as it is known.
     clock: Option<f64>,
-    /// How many more legs may be listed.
+    /// The number of legs that may still be listed.
     left: u64,
     /// The group and the run.
     index: ActionIndex,
-    /// Whether it is along one of several ways. Those of a branch on it are not walked: they double at each.
+    /// True if it is along one of several ways. Those of a branch on it are not walked: they double at each.
     is_way: bool,
     frames: Vec<Frame<'p>>,
     rounds: Vec<u32>,
-    /// How many there are of each of `rounds`.
+    /// The total of each of `rounds`.
     counts: Vec<u32>,
     calls: Vec<Call>,
     /// That of `rounds`, `counts` and `calls`, once it is asked for.
@@ -70,7 +70,7 @@ impl<'p> Walk<'p> {
         }
     }
 
-    /// What has been walked.
+    /// Returns the walked path.
     pub(crate) fn into_path(self) -> RobotPath {
         self.path
     }
@@ -149,7 +149,7 @@ impl<'p> Walk<'p> {
         self.frames.pop();
     }
 
-    /// Whether there is another round that has to be looked at.
+    /// Returns whether there is another round that has to be looked at.
     fn next_round(&mut self, block: &Block, count: u32) -> bool {
         let rest = self.rounds.last().map_or(0, |round| count.saturating_sub(*round));
         if rest == 0 || (self.left == 0 && self.skip(&block.summary.repeated(rest))) {
@@ -247,7 +247,7 @@ impl<'p> Walk<'p> {
     }
 }
 
-/// What a robot may do where its path becomes unknown.
+/// The possible drives of a robot where its path becomes unknown.
 #[derive(Clone, Copy)]
 enum Possible<'p> {
     Bound(&'p Course),
