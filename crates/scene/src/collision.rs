@@ -16,7 +16,7 @@ const MOST_STEPS: u32 = 20_000;
 pub struct Collision {
     /// Its index in the scene.
     pub robot: usize,
-    /// What it is doing.
+    /// Its action at that time.
     pub action: ActionIndex,
     /// In which rounds and calls that is.
     pub place: Place,
@@ -24,9 +24,9 @@ pub struct Collision {
     pub time: Option<f64>,
     /// Where it is.
     pub pose: Pose,
-    /// What it collides with.
+    /// The robot or obstacle that it collides with.
     pub with: Thing,
-    /// What the other robot is doing; `None` if it stands still, or if it is not a robot.
+    /// The other robot's action; `None` if it stands still, or if it is not a robot.
     pub other_action: Option<ActionIndex>,
     /// In which rounds and calls that is.
     pub other_place: Place,
@@ -73,7 +73,7 @@ struct Moving {
     trajectory: Trajectory,
     /// The obstacle alone.
     space: Space,
-    /// How many distances to it have been computed for the robot.
+    /// The number of distances to it that have been computed for the robot.
     steps: u32,
 }
 
@@ -128,7 +128,7 @@ fn with_fixed(space: &Space, body: Body, leg: &Leg, steps: &mut u32) -> Option<(
     None
 }
 
-/// How a body moves for some time.
+/// The motion of a body for some time.
 struct Way<P: Fn(f64) -> Pose> {
     /// Seconds since the start of the run.
     start: f64,
@@ -561,7 +561,7 @@ mod tests {
             };
             let plan = plan(&robots, &groups.iter().map(runs).collect::<Vec<Vec<Run>>>()).unwrap();
             let (mut space, end, step) = (Space::of(&scene), plan.duration.unwrap(), 0.004);
-            // What is nearer than it moves in two steps may be met between them.
+            // Things nearer than the robot moves in two steps may be met between them.
             let doubt = 2.0 * step * 1.3;
             let mut looked: BTreeMap<(usize, usize), (f64, f64)> = BTreeMap::new();
             let mut time = 0.0;
@@ -581,7 +581,7 @@ mod tests {
                 };
                 space.move_to(time);
                 for (robot, &(body, pose)) in bodies.iter().enumerate() {
-                    // What comes to a robot between its actions is not looked for.
+                    // Things that come to a robot between its actions are not looked for.
                     if !acts(&plan.robots[robot], time) {
                         continue;
                     }

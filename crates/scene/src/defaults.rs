@@ -27,7 +27,7 @@ pub const HEIGHT: f64 = 0.5;
 /// The coefficient of sliding friction between wheels and the floor.
 pub const FRICTION: f64 = 0.8;
 
-/// How strongly motors hold their speed: newtons at the rim for each metre per second that it is off.
+/// The gain of motors that hold their speed: newtons at the rim for each metre per second that it is off.
 pub const MOTOR_GAIN: f64 = 500.0;
 
 /// The width of standard wheels, metres.

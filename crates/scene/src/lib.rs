@@ -40,7 +40,7 @@ pub struct Scene {
     pub noise: Option<Noise>,
     /// The seed of noise.
     pub seed: u64,
-    /// Whether robots are stopped by what they touch.
+    /// True if robots are stopped by what they touch.
     pub collisions: bool,
     /// The coefficient of sliding friction between wheels and the floor.
     pub friction: f64,

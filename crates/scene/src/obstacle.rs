@@ -13,7 +13,7 @@ pub struct Obstacle {
     pub pose: Pose,
     /// Its outline.
     pub shape: Shape,
-    /// How far it rises from the floor, metres.
+    /// Its height above the floor, metres.
     pub height: f64,
     /// Where its middle is at which time, if it moves; its heading stays.
     pub trajectory: Option<Trajectory>,

@@ -30,15 +30,16 @@ pub struct Robot {
     pub motor_acceleration: f64,
     /// The greatest speed of the wheels' rims, metres per second; infinite for no limit.
     pub motor_speed: f64,
-    /// How strongly the motors hold their speed: newtons at the wheels' rims for each metre per second that it is off.
+    /// The gain of the motors that hold their speed: newtons at the wheels' rims for each metre per second that it is
+    /// off.
     pub motor_gain: f64,
     /// The width of its wheels if they are standard ones, metres.
     pub wheel_width: f64,
-    /// How clients of the remote API see the object that has its name.
+    /// The frame that clients of the remote API see of the object with its name.
     pub frame: Frame,
     /// Where it and its parts are in `CoppeliaSim`'s scene, if their objects have other names there.
     pub objects: Objects,
-    /// What is not as usual of its topics in ROS 2.
+    /// The settings of its topics in ROS 2 that are not the usual ones.
     pub ros2: Ros2,
 }
 
@@ -89,7 +90,7 @@ pub struct Wheel {
     pub name: String,
     /// Metres.
     pub radius: f64,
-    /// Whether its joint's axis points to the body's right (−y) instead of the left: then positive rates roll the robot
+    /// True if its joint's axis points to the body's right (−y) instead of the left: then positive rates roll the robot
     /// backwards.
     pub mirrored: bool,
 }
@@ -106,7 +107,7 @@ impl Wheel {
 pub struct Sensor {
     /// Its name, which is also that of its object.
     pub name: String,
-    /// What it measures.
+    /// The kind of its measurements.
     pub kind: SensorKind,
     /// Its position, and what it sees from there.
     pub mount: Mount,
@@ -182,7 +183,7 @@ impl Robot {
         model.with_scrub_factor(scrub_factor(self.drive, self.geometry, self.lateral_friction))
     }
 
-    /// How it moves when its wheels turn, if its track is wider than the geometry says by a share of it.
+    /// Returns its traction, if its track is wider than the geometry says by a share of it.
     pub fn traction(&self, track_error: f64) -> Traction {
         let geometry = Geometry { track: self.geometry.track * (1.0 + track_error), ..self.geometry };
         Traction::new(self.drive, geometry, self.lateral_friction)

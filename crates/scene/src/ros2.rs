@@ -1,4 +1,4 @@
-//! What a robot is called in ROS 2: what scripts have to know where its driver does not do what is usual.
+//! The names of a robot in ROS 2, and the facts that scripts need where its driver does not do what is usual.
 
 use pydslrep_schema::Section;
 
@@ -11,14 +11,14 @@ pub enum Ros2Value {
     Text(String),
     /// A length or speed.
     Number(f64),
-    /// Whether something is so.
+    /// A yes or no.
     Flag(bool),
 }
 
 /// The keys that are not as usual, in the order of the list, with their values.
 pub type Ros2 = Vec<(&'static str, Ros2Value)>;
 
-/// What the topics and frames of a robot are called.
+/// The names of a robot's topics and frames.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Topics {
     namespace: String,
@@ -58,7 +58,7 @@ pub(crate) fn read(section: &Section) -> Ros2 {
         .collect()
 }
 
-/// Whether a value is the default of its key.
+/// Returns whether a value is the default of its key.
 fn is_usual(default: &str, value: &Ros2Value) -> bool {
     let written = match value {
         Ros2Value::Text(text) => format!("`\"{text}\"`"),
@@ -69,7 +69,7 @@ fn is_usual(default: &str, value: &Ros2Value) -> bool {
 }
 
 impl Robot {
-    /// What its topics are called; scripts come to the same names (`python/pydslrep_runtime/ros2_topics.py`).
+    /// Returns the names of its topics; scripts come to the same names (`python/pydslrep_runtime/ros2_topics.py`).
     pub fn topics(&self) -> Topics {
         let namespace = self.ros2_name("namespace").unwrap_or_else(|| format!("/{}", self.name));
         let usual = |key| self.ros2_name(key).unwrap_or_default();
@@ -99,7 +99,7 @@ impl Robot {
         })
     }
 
-    /// What a script has to know: its table, and the distances between its wheels, which no topic tells.
+    /// Returns the facts that a script needs: its table, and the distances between its wheels, which no topic reports.
     pub fn ros2(&self) -> Ros2 {
         let mut all = self.ros2.clone();
         let usual = defaults::GEOMETRY;

@@ -14,7 +14,7 @@ pub struct Space {
     movers: Vec<Mover>,
 }
 
-/// What makes a part move.
+/// The trajectory of a part that moves.
 #[derive(Debug, Clone)]
 struct Mover {
     /// Its index among the parts.
@@ -55,7 +55,7 @@ pub struct Near {
     pub obstacle: usize,
 }
 
-/// What a sensor sees.
+/// The nearest point that a sensor sees.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sighting {
     /// From the sensor to the nearest point in its cone, metres.
@@ -64,7 +64,7 @@ pub struct Sighting {
     pub point: (f64, f64),
     /// The normal of the surface there: a unit vector on the floor.
     pub normal: (f64, f64),
-    /// What the point belongs to.
+    /// The robot or obstacle that the point belongs to.
     pub what: Thing,
 }
 
@@ -228,7 +228,7 @@ impl ConvexPart {
         Self { owner, solid: Solid::Triangle(triangle), placement, centre, reach }
     }
 
-    /// Whether it is certainly further away than `bound`.
+    /// Returns whether it is certainly further away than `bound`.
     fn is_beyond(&self, other: &Self, bound: f64) -> bool {
         self.centre.distance(other.centre) - self.reach - other.reach > bound
     }
@@ -251,7 +251,7 @@ impl Solid {
     }
 }
 
-/// What a sensor sees of the floor.
+/// The cone of a sensor, on the floor.
 struct SensorCone {
     at: Vector,
     heading: Vector,
@@ -472,7 +472,7 @@ mod tests {
             corners.iter().copied().zip(corners.iter().copied().cycle().skip(1))
         }
 
-        /// Whether a point is inside: a line from it to the right crosses an odd number of edges.
+        /// Returns whether a point is inside: a line from it to the right crosses an odd number of edges.
         fn holds(&self, (x, y): (f64, f64)) -> bool {
             match self {
                 Self::Circle { centre, radius } => (x - centre.0).hypot(y - centre.1) <= *radius,
@@ -485,7 +485,7 @@ mod tests {
             }
         }
 
-        /// How far a ray goes before it meets the outline.
+        /// Returns the distance that a ray goes before it meets the outline.
         fn ray(&self, from: (f64, f64), angle: f64) -> Option<f64> {
             let (dx, dy) = (angle.cos(), angle.sin());
             match self {
@@ -570,7 +570,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(1_000))]
 
-        /// What a sensor sees is the nearest point of the outline in its cone.
+        /// A sensor sees the nearest point of the outline in its cone.
         #[test]
         fn a_cone_sees_the_nearest_point_of_the_outline_in_it(
             obstacle in obstacles(), x in -1.5..1.5, y in -1.5..1.5, theta in -3.0..3.0, cone in 5.0..120.0,

@@ -99,7 +99,7 @@ impl Trajectory {
         &self.points
     }
 
-    /// Whether it goes there and back, again and again.
+    /// Returns whether it goes there and back, again and again.
     pub fn repeats(&self) -> bool {
         self.repeats
     }
@@ -250,7 +250,7 @@ mod tests {
     }
 
     proptest! {
-        /// What the search for collisions relies on.
+        /// The search for collisions relies on this.
         #[test]
         fn within_a_piece_it_is_as_fast_as_the_piece_says(
             first in 0.0..3.0, steps in prop::collection::vec((0.01..4.0, -3.0..3.0, -3.0..3.0), 1..5),

@@ -23,8 +23,8 @@ pub fn read(text: &str, floor: Scene) -> (Scene, Vec<Problem>) {
     }
 }
 
-/// What is wrong with a scene file as long as its program is not known: any name can be that of a robot or a sensor, and
-/// the positions of robots are unspecified.
+/// Returns the problems of a scene file as long as its program is not known: any name can be that of a robot or a
+/// sensor, and the positions of robots are unspecified.
 pub fn problems(text: &str) -> Vec<Problem> {
     match SCHEMA.read(text, None) {
         Err(problem) => vec![problem],
@@ -129,7 +129,7 @@ impl Reader {
         }
     }
 
-    /// How an obstacle moves; `None` if it does not, or if what the file says of it is wrong.
+    /// Reads the path of an obstacle; `None` if it does not move, or if the path is wrong.
     fn trajectory(&mut self, section: &Section) -> Option<Trajectory> {
         let Some(rows) = section.rows("path") else {
             if section.flag("repeat") == Some(true) && !section.is_wrong("path") {
@@ -615,7 +615,7 @@ mod tests {
             let header = table.header(&name);
             let with = |key: &Key, value: &str| {
                 let others = table.keys.iter().filter(|other| {
-                    // What there are walls around, and what is repeated.
+                    // Walls need a size, and only a path is repeated.
                     let is_needed = matches!(
                         (table.name, other.name, key.name),
                         ("world", "size", _) | (_, "path", "repeat")

@@ -19,7 +19,7 @@ use crate::Scene;
 /// A step of the physics, seconds.
 const TIME_STEP: f64 = 0.002;
 
-/// What collides with what: bits of `contype`, and of `conaffinity` in what is stopped.
+/// The bits that say which things collide: in `contype`, and in `conaffinity` of the things that are stopped.
 const FLOOR: u8 = 1;
 const OBSTACLE: u8 = 2;
 const HULL: u8 = 4;
@@ -58,7 +58,7 @@ pub fn mjcf(scene: &Scene) -> String {
     text
 }
 
-/// How its files begin: who writes them again knows them by it (`output/src/kind.rs`).
+/// The first words of its files, by which they are known when they are written again (`output/src/kind.rs`).
 const MARK: &str = "A world for MuJoCo, written by PyDSLRep";
 
 fn floor(friction: f64) -> Element {
@@ -72,7 +72,7 @@ fn floor(friction: f64) -> Element {
         .numbers("rgba", &[0.93, 0.93, 0.91, 1.0])
 }
 
-/// What is not of the physics.
+/// Returns the numbers that do not belong to the physics.
 fn numbers(scene: &Scene) -> Vec<Element> {
     #[expect(clippy::cast_precision_loss, reason = "seeds of files are below 2³²; of others, any will do")]
     let seed = scene.seed as f64;

@@ -1,4 +1,4 @@
-//! What stands and moves on the floor.
+//! Obstacles that stand or move on the floor.
 
 use std::collections::HashSet;
 
@@ -16,7 +16,7 @@ pub(super) struct World {
     pub(super) paths: Vec<Element>,
     /// The names that are taken.
     names: HashSet<String>,
-    /// Whether robots are stopped by them.
+    /// True if robots are stopped by them.
     is_solid: bool,
 }
 

@@ -62,7 +62,7 @@ fn least_radius(robot: &Robot) -> f64 {
     robot.wheels.iter().map(|wheel| wheel.radius).fold(f64::INFINITY, f64::min)
 }
 
-/// How high the hull's middle is, and its sensors are; metres.
+/// Returns the height of the hull's middle and of the sensors; metres.
 fn middle(robot: &Robot) -> f64 {
     CLEARANCE.min(least_radius(robot) / 2.0) + HULL_HEIGHT / 2.0
 }
@@ -81,7 +81,7 @@ fn hull(robot: &Robot, is_solid: bool) -> Element {
         .numbers("rgba", &[0.2, 0.45, 0.7, 0.6])
 }
 
-/// What supports a robot with one axle, ahead and behind.
+/// Returns the casters that support a robot with one axle, ahead and behind.
 fn casters(robot: &Robot) -> Vec<Element> {
     if robot.drive.row().has_wheelbase() {
         return Vec::new();
@@ -120,7 +120,7 @@ fn sensors(robot: &Robot) -> Vec<Element> {
     sensors.map(site).collect()
 }
 
-/// A motor that holds the rate that it is told.
+/// Returns a motor that holds the rate it is set to.
 fn motor(robot: &Robot, mount: &Mount) -> Element {
     let motor = Element::new("velocity")
         .text("name", &mount.name)

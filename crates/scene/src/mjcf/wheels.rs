@@ -9,7 +9,7 @@ use crate::Robot;
 /// The inertia of a motor's rotor at the rim, kilograms. With less, motors swing.
 const ROTOR: f64 = 0.5;
 
-/// What brakes a wheel, newtons at the rim for each metre per second.
+/// The drag of a wheel, newtons at the rim for each metre per second.
 const DRAG: f64 = 0.5;
 
 /// Kilograms.
@@ -76,8 +76,8 @@ fn tyre(radius: f64, width: f64) -> Element {
     )
 }
 
-/// What rolls on the floor, and on nothing of its own robot: the rollers of a wheel would brake each other, and `MuJoCo` lets
-/// those of one wheel collide.
+/// Makes a geom that rolls on the floor, and on nothing of its own robot: the rollers of a wheel would brake each
+/// other, and `MuJoCo` lets those of one wheel collide.
 fn rolling(geom: Element) -> Element {
     geom.text("contype", "0")
         .text("conaffinity", (FLOOR | OBSTACLE).to_string())
@@ -86,7 +86,7 @@ fn rolling(geom: Element) -> Element {
         .text("group", UNSEEN)
 }
 
-/// What rollers are mounted on; it touches nothing.
+/// Makes a hub, on which rollers are mounted; it touches nothing.
 fn hub(radius: f64) -> Element {
     Element::new("geom")
         .text("type", "cylinder")

@@ -33,7 +33,7 @@ impl Element {
         self
     }
 
-    /// Whether it says nothing.
+    /// Returns whether it has neither attributes nor children.
     pub(super) fn is_void(&self) -> bool {
         self.attributes.is_empty() && self.children.is_empty()
     }
