@@ -1,4 +1,4 @@
-//! What one place sets.
+//! The settings from one place.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use crate::keys::{DEFAULTS, SCHEMA, Settings};
 use crate::severities::{self, Level, Severities};
 use crate::{Edition, Problem, SECTION, Target};
 
-/// What one place sets: a file, an editor, or the options of a command.
+/// The settings from one place: a file, an editor, or the options of a command.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Config {
     /// By table and key; severities are in `severities`.
@@ -18,7 +18,7 @@ pub struct Config {
     severities: Severities,
 }
 
-/// What extensions of editors keep in the same section for themselves.
+/// The keys that extensions of editors keep in the same section for themselves.
 const KEPT_BY_EDITORS: [&str; 2] = ["server", "trace"];
 
 impl Config {
@@ -69,7 +69,7 @@ impl Config {
         Self { severities, ..Self::default() }
     }
 
-    /// Whether it sets the folder of scripts, which is relative to the place that sets it.
+    /// Returns whether it sets the folder of scripts, which is relative to the place that sets it.
     pub fn sets_output(&self) -> bool {
         self.values.contains_key(&("", "output"))
     }
@@ -81,7 +81,7 @@ impl Config {
         Self { values, severities: self.severities.merged_over(base.severities) }
     }
 
-    /// What applies, with defaults for what is not set.
+    /// Returns the settings that apply, with defaults for those that are not set.
     pub fn settings(self) -> Settings {
         Settings::from(&self)
     }

@@ -39,7 +39,7 @@ fn read(path: &str) -> Result<String, Refusal> {
 }
 
 impl Settings {
-    /// How many folders the path to scripts has; 0 where they go beside programs.
+    /// Returns the number of folders in the path to scripts; 0 where they go beside programs.
     pub fn output_depth(&self) -> usize {
         self.output.iter().flat_map(|path| path.split('/')).filter(|part| *part != ".").count()
     }

@@ -71,7 +71,7 @@ macro_rules! settings {
 }
 
 settings! {
-    /// What applies to a program.
+    /// The settings that apply to a program.
     struct Settings in "" {
         /// The simulator that scripts are for.
         target: Target = key("target", Values::Words(&TARGETS), "").default("`\"coppeliasim\"`").example("\"vrep\""),
@@ -92,9 +92,9 @@ settings! {
     severities: Severities,
     /// Where CoppeliaSim runs.
     coppeliasim: SimulatorAddress,
-    /// What an editor shows between the words of a program.
+    /// The hints that an editor shows between the words of a program.
     inlay_hints: InlayHints,
-    /// What an editor shows above declarations.
+    /// The commands and counts that an editor shows above declarations.
     code_lens: CodeLens,
 }
 
@@ -130,7 +130,7 @@ settings! {
         run: bool = flag("run", true),
         /// Whether an editor shows *Preview* above an environment.
         preview: bool = flag("preview", true),
-        // What has many declarations, each used once, would fill the screen.
+        // Kinds with many declarations, each used once, would fill the screen.
         /// Whether an editor shows above a wheel how often it is used.
         wheels: bool = flag("wheels", false),
         /// Whether an editor shows above a sensor how often it is used.

@@ -90,7 +90,7 @@ impl Level {
         }
     }
 
-    /// What it does, in a few words.
+    /// Returns a description in a few words.
     pub const fn summary(self) -> &'static str {
         match self {
             Self::Off => "not shown",
@@ -120,9 +120,9 @@ impl Level {
 /// A word that is neither a code nor a level.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct UnknownWord {
-    /// What is wrong, in one sentence.
+    /// The problem, in one sentence.
     pub message: String,
-    /// What to do.
+    /// The remedy.
     pub help: String,
 }
 
