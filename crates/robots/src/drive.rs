@@ -37,7 +37,7 @@ impl Drive {
         Self::ALL.into_iter().find(|drive| drive.word() == word)
     }
 
-    /// How many driven wheels it has.
+    /// Returns the number of its driven wheels.
     pub const fn wheel_count(self) -> usize {
         self.row().wheels.len()
     }

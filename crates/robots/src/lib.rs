@@ -1,4 +1,4 @@
-//! The types of robots: one table of what tells them apart, for all that reads, plans, simulates or drives them.
+//! The types of robots: one table of their differences, for all that reads, plans, simulates or drives them.
 //!
 //! Knows constants only, and depends on nothing. Must never know how robots move, how programs are read, files or clocks.
 //! Units: metres; x forward, y left.

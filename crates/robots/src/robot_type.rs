@@ -2,25 +2,25 @@
 
 use crate::Drive;
 
-/// What tells a type of robot apart from the others.
+/// The row of a type of robot: its differences from the others.
 #[derive(Debug, PartialEq)]
 pub struct RobotType {
     /// The type.
     pub drive: Drive,
     /// As programs spell it.
     pub word: &'static str,
-    /// What people call it, with its article: `a two-wheel robot`.
+    /// Its name with the article: `a two-wheel robot`.
     pub noun: &'static str,
-    /// How it is driven, as the title of a description: `Two-wheel differential drive`.
+    /// The title of its description: `Two-wheel differential drive`.
     pub label: &'static str,
     /// The places of its wheels, in the order in which programs list them and everything else has them.
     pub wheels: &'static [WheelPlace],
-    /// Whether it drives on mecanum wheels (`wheelH`); otherwise on standard ones (`wheel`).
+    /// True if it drives on mecanum wheels (`wheelH`); otherwise on standard ones (`wheel`).
     pub mecanum: bool,
     /// Another type that it is driven as if all its wheels are mecanum wheels, which is then a warning instead of an error: so
     /// the article's programs have it.
     pub on_mecanum: Option<Drive>,
-    /// Whether it can explore with distance sensors (`slam`).
+    /// True if it can explore with distance sensors (`slam`).
     pub explores: bool,
     /// The class that a script makes such robots of.
     pub class: &'static str,
@@ -41,9 +41,9 @@ pub struct RobotType {
 pub struct WheelPlace {
     /// As scripts spell it: `left_front`.
     pub identifier: &'static str,
-    /// How far ahead of the body's middle, in half wheelbases: 1, −1, or 0 on the only axle.
+    /// The distance ahead of the body's middle, in half wheelbases: 1, −1, or 0 on the only axle.
     pub ahead: f64,
-    /// How far to the left of it, in half tracks: 1 or −1.
+    /// The distance to the left of it, in half tracks: 1 or −1.
     pub left: f64,
     /// Which way it pushes: 0 along the wheel, 1 ahead and to the left by as much, −1 ahead and to the right, as the axes of a
     /// mecanum wheel's rollers lead.
@@ -129,12 +129,13 @@ pub(crate) const FOUR_MECANUM: RobotType = RobotType {
 };
 
 impl RobotType {
-    /// Whether some wheels are ahead of others.
+    /// Returns whether some wheels are ahead of others.
     pub fn has_wheelbase(&self) -> bool {
         self.wheels.iter().any(|wheel| wheel.ahead != 0.0)
     }
 
-    /// Whether wheels are dragged sideways over the floor in turns: standard ones that are not on an axle through the middle.
+    /// Returns whether wheels are dragged sideways over the floor in turns: standard ones not on an axle through the
+    /// middle.
     pub fn scrubs(&self) -> bool {
         !self.mecanum && self.has_wheelbase()
     }
