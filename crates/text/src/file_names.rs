@@ -1,15 +1,15 @@
-//! How the files of a project are named.
+//! The names of a project's files.
 
 /// The extension of programs.
 pub const PROGRAM_EXTENSION: &str = "pyr";
 
-/// What the names of scene files end in, after the name of the environment.
+/// The suffix of the names of scene files, after the name of the environment.
 pub const SCENE_SUFFIX: &str = ".scene.toml";
 
 /// The name of the settings file.
 pub const SETTINGS_FILE: &str = "pydslrep.toml";
 
-/// Whether a name without its extension means a device on Windows, whatever its extension.
+/// Returns whether a name without its extension means a device on Windows, whatever its extension.
 pub fn is_reserved_on_windows(stem: &str) -> bool {
     let name = stem.to_ascii_lowercase();
     let is_port = |prefix| {

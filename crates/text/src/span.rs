@@ -40,12 +40,12 @@ impl Span {
         self.end - self.start
     }
 
-    /// Whether it covers nothing.
+    /// Returns whether it covers nothing.
     pub fn is_empty(self) -> bool {
         self.start == self.end
     }
 
-    /// Whether `offset` is inside or at either end, as a cursor does.
+    /// Returns whether `offset` is inside or at either end, as a cursor does.
     pub fn touches(self, offset: u32) -> bool {
         self.start <= offset && offset <= self.end
     }

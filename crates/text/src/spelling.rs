@@ -1,21 +1,20 @@
 //! When one word is close enough to another to be meant.
 
-/// Whether `written` is plausibly a slip for `meant`: equal except for case, or an edit distance of up to a third of
-/// the length. Words of one or two letters count as slips only by case or by two letters changing places.
+/// Returns whether `written` is plausibly a slip for `meant`: equal except for case, or an edit distance of up to a
+/// third of the length. Words of one or two letters count as slips only by case or by two letters changing places.
 pub fn is_similar(written: &str, meant: &str) -> bool {
     slip(written, meant).is_some()
 }
 
-/// How far apart two words are: first whether in more than case, then by how many edits.
+/// The distance between two words: first whether they differ in more than case, then the number of edits.
 type Distance = (bool, usize);
 
-/// How far apart the two are, if one may be a slip for the other: the less, the nearer.
+/// Returns the distance between the two, if one may be a slip for the other: the less, the nearer.
 fn slip(written: &str, meant: &str) -> Option<Distance> {
     slip_within(written, meant, (true, usize::MAX))
 }
 
-/// As [`slip`], if they are not farther apart than `bound`. Nearly all of many names are told apart by their lengths and
-/// ends alone.
+/// As [`slip`], if they are not farther apart than `bound`. Lengths and ends alone rule nearly all of many names out.
 fn slip_within(written: &str, meant: &str, bound: Distance) -> Option<Distance> {
     let (one, other) = differing(written, meant);
     if one.is_empty() && other.is_empty() {
@@ -46,8 +45,7 @@ fn at_least(one: &str, other: &str) -> usize {
     }
 }
 
-/// What is left of two words without what they have in common at the start and at the end, which changes nothing about
-/// their distance.
+/// Removes what two words have in common at the start and at the end, which changes nothing about their distance.
 fn differing<'a>(one: &'a str, other: &'a str) -> (&'a str, &'a str) {
     let same = |(a, b): &(u8, u8)| a == b;
     let mut head = one.bytes().zip(other.bytes()).take_while(same).count();
