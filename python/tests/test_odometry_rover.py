@@ -2,7 +2,6 @@
 
 import math
 import random
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -17,7 +16,7 @@ from pydslrep_runtime.slam.odometry.rover import OdometryRover
 from pydslrep_runtime.slam.odometry.scan_log import ScanLog
 from pydslrep_runtime.slam.odometry.surface import SurfacePoints
 from rooms import Pillar, Rooms, Wall
-from slipping_robot import SlippingRobot
+from slipping_robot import SlippingRobot, rover
 
 AHEAD = [Reading(Pose(0.1, 0.0, 0.0), math.radians(170.0), 0.5, is_hit=True)]
 
@@ -27,18 +26,6 @@ class Grid(OccupancyGrid):
 
     def cells(self) -> tuple[set[Cell], set[Cell]]:
         return self._free, self._occupied - self._free
-
-
-def rover(robot: SlippingRobot) -> OdometryRover:
-    slam_session: Any = SimpleNamespace(
-        uses_odometry=True,
-        extent=20.0,
-        range=lambda robot, sensor, reported: reported,
-        cone=lambda robot, sensor, reported: reported,
-        radius=lambda robot, spanned: spanned,
-    )
-    driving: Any = robot
-    return OdometryRover(driving, slam_session)
 
 
 def test_exploring_with_wheels_that_slip() -> None:
