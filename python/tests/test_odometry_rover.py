@@ -129,6 +129,20 @@ def test_a_robot_that_was_held_finds_its_way() -> None:
     assert robot.off()[0] < 0.05
 
 
+def test_a_robot_that_was_held_is_lost_until_a_scan_fits() -> None:
+    slam, start = GraphSlam(Calibration()), Pose(0.0, 0.0, 0.0)
+    first: Any = Walls(0.0, 1.0)
+    slam.add_keyframe(first, start, Leg(0.0))
+    # As far as it drives, nothing is known; whether it was held decides.
+    for number, turn in ((1, 0.0), (2, None)):
+        there: Any = Walls(0.0, 1.0)
+        pose = Pose(9.0 * number, 0.0, 0.0)
+        there.middle_pose = lambda pose=pose: pose
+        slam.add_keyframe(there, pose, Leg(9.0, turn))
+        assert slam.is_lost == (turn is None)
+    assert slam.uncertain == {2}
+
+
 def test_a_robot_is_lost_where_two_places_look_alike() -> None:
     # Turned by 90 degrees to the left or to the right?
     robot = SlippingRobot(Rooms(1.8, 1.0, start=(0.9, 0.5)), noise=0.01)

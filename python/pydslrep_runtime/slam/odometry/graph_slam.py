@@ -15,7 +15,13 @@ from .dominant_orientation import (
 )
 from .odometer import Leg
 from .pose_graph import Constraint, PoseGraph
-from .relocalisation import MIN_POINTS, is_same, relocalise, seen_through
+from .relocalisation import (
+    MIN_POINTS,
+    is_same,
+    is_sure,
+    relocalise,
+    seen_through,
+)
 from .scan import Scan
 from .scan_matching import DRIFT_SIGMA, MapPoints, ScanMatch, match_scan
 from .surface import Complex, SurfacePoints
@@ -156,7 +162,10 @@ class GraphSlam:
         is_enough = len(points) >= MIN_POINTS
         seen = seen_through(points, here, self._map_points(near)) if is_enough else 0
         is_wrong = seen >= MAX_SEEN_THROUGH
-        is_doubtful = seen >= FEW_SEEN_THROUGH or self.is_lost
+        # A match nearby may be wrong if the robot may be elsewhere.
+        is_held = number > 0 and leg.was_held
+        is_wrong = is_wrong or (is_held and not (match and is_sure(match)))
+        is_doubtful = seen >= FEW_SEEN_THROUGH or self.is_lost or is_wrong
         self.has_slipped = False
         if is_doubtful or (is_enough and match is None):
             found = self._search(number, points)
