@@ -103,15 +103,26 @@ class Walls:
         return self._points
 
 
-@pytest.mark.parametrize(("part", "corrected"), [(0.7, 0.0), (0.9, -12.0)])
-def test_few_oblique_walls_do_not_turn_the_robot(part: float, corrected: float) -> None:
+@pytest.mark.parametrize(
+    ("way", "degrees", "part", "corrected"),
+    [
+        (9.0, 12.0, 0.7, 0.0),
+        (9.0, 12.0, 0.9, -12.0),
+        # The longer no walls have told the heading, the less sure is the estimate.
+        (9.0, 9.0, 0.6, -9.0),
+        (2.5, 9.0, 0.6, 0.0),
+    ],
+)
+def test_few_oblique_walls_do_not_turn_the_robot(
+    way: float, degrees: float, part: float, corrected: float
+) -> None:
     slam, start = GraphSlam(Calibration()), Pose(0.0, 0.0, 0.0)
     first: Any = Walls(0.0, 1.0)
-    slam.add_keyframe(first, start, Leg(0.0))
+    slam.add_keyframe(first, start, Leg(0.0, 0.0))
     # Too far for a match with the first.
-    second: Any = Walls(12.0, part)
+    second: Any = Walls(degrees, part)
     second.middle_pose = lambda: Pose(9.0, 0.0, 0.0)
-    here = slam.add_keyframe(second, Pose(9.0, 0.0, 0.0), Leg(9.0))
+    here = slam.add_keyframe(second, Pose(9.0, 0.0, 0.0), Leg(way, 0.0))
     assert math.degrees(here.theta) == pytest.approx(corrected, abs=3.0)
 
 
