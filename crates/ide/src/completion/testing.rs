@@ -1,4 +1,4 @@
-//! How the tests of completion ask for a list.
+//! Requests completion in tests.
 
 use expect_test::Expect;
 

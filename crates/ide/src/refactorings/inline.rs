@@ -90,7 +90,7 @@ fn row_robot(row: &Row<'_>) -> Option<EntityId> {
     database.resolve(file, EntityKind::Robot, &row.movement.robot.as_ref()?.text).entity()
 }
 
-/// Whether a movement does itself or another one, perhaps by way of others.
+/// Returns whether a movement does itself or another one, directly or through others.
 fn does(database: &Database, movement: EntityId, other: EntityId) -> bool {
     let mut seen = FxHashSet::default();
     let mut open = vec![movement];

@@ -1,5 +1,5 @@
-//! How much completion helps: types the paper's programs, the examples and generated ones optimally, key by key. The
-//! figures are in `docs/performance.md`.
+//! Measures how much completion helps: types the paper's programs, the examples and generated ones optimally, key by
+//! key. The figures are in `docs/performance.md`.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests are tests, too")]
 
