@@ -20,7 +20,7 @@ pub(crate) struct Children {
     /// The program `pydslrep`.
     pub(crate) command: PathBuf,
     running: Vec<(Option<ProgressToken>, Running)>,
-    /// How many were started.
+    /// The number of children started.
     count: u64,
     /// Where they draw; deleted with the session.
     pictures: Option<TemporaryFolder>,
@@ -52,7 +52,7 @@ impl Children {
         Ok(started)
     }
 
-    /// How many were started.
+    /// Returns the number of children started.
     pub(crate) fn count(&self) -> u64 {
         self.count
     }
@@ -95,7 +95,7 @@ pub(crate) struct Running {
     folder: Arc<Path>,
 }
 
-/// What a child process does.
+/// An event of a child process.
 #[derive(Debug)]
 pub(crate) enum ChildEvent {
     /// It printed a line on standard output; the end of the line is part of it.

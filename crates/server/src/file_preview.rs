@@ -52,7 +52,7 @@ impl FilePreview {
         Ok(Self { session, uri, text, version: 1, address, _runtime: runtime })
     }
 
-    /// The page's address, which is a secret: whoever knows it sees the path.
+    /// The page's address, a secret: any client that knows it sees the path.
     pub fn address(&self) -> &str {
         &self.address
     }

@@ -5,10 +5,10 @@ use std::io::{self, BufRead, BufReader, Read};
 /// The longest message; a larger `Content-Length` is rejected before anything is allocated for it.
 const LONGEST_BODY: u64 = 256 << 20;
 
-/// How much of a header line is kept. Its beginning is dropped, which may be the rest of a broken message.
+/// The maximum number of bytes kept of a header line. Its beginning is dropped, which may be the rest of a broken message.
 const LONGEST_LINE: usize = 4096;
 
-/// What was found on the stream.
+/// A unit found on the stream.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) enum Frame {
     /// The bytes of one message.
@@ -17,7 +17,7 @@ pub(crate) enum Frame {
     BadHeader,
 }
 
-/// What the lines before a body say about it.
+/// The header of a body, as read from its lines.
 #[derive(Clone, Copy)]
 enum Header {
     Length(u64),
@@ -36,7 +36,7 @@ impl<R: Read> FrameReader<R> {
         Self { input: BufReader::with_capacity(1 << 16, input), lost: false }
     }
 
-    /// Whether part of another message has already arrived.
+    /// Returns whether part of another message has already arrived.
     pub(crate) fn has_more(&self) -> bool {
         !self.input.buffer().is_empty()
     }

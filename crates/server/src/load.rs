@@ -1,4 +1,5 @@
-//! How many bytes of messages wait to be written, so that a client that does not read costs a bounded amount of memory.
+//! The number of bytes of messages that wait to be written: a client that does not read costs a bounded amount of
+//! memory.
 
 use std::future::{Future, poll_fn};
 #[cfg(feature = "process")]
@@ -6,7 +7,8 @@ use std::sync::Condvar;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::task::{Poll, Waker};
 
-/// What waits to be written; clones share it. The default has no limit: it is for whoever takes messages at once.
+/// The bytes that wait to be written; clones share it. The default has no limit, for clients that take messages at
+/// once.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Load(Option<Arc<Shared>>);
 
@@ -65,12 +67,12 @@ impl Load {
         Self(Some(Arc::new(shared)))
     }
 
-    /// Whether there is no room for another answer.
+    /// Returns whether there is no room for another answer.
     pub(crate) fn is_full(&self) -> bool {
         self.lock().is_some_and(|(shared, state)| shared.is_full(&state))
     }
 
-    /// Whether nobody reads any more.
+    /// Returns whether nobody reads any more.
     pub(crate) fn is_over(&self) -> bool {
         self.lock().is_some_and(|(_, state)| state.is_over)
     }

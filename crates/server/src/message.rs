@@ -17,7 +17,7 @@ pub(crate) const IGNORED: &str = "pydslrep: ignored ";
 /// A message to the client, encoded.
 pub(crate) type Body = Vec<u8>;
 
-/// What a client may send.
+/// A message from the client.
 #[derive(Debug, PartialEq)]
 pub(crate) enum Incoming {
     /// A request, or a notification if it has no id.
@@ -122,7 +122,7 @@ pub(crate) fn refuse(id: Id, code: ErrorCode, message: String) -> Response {
     Response::from_error(id, Error { code, message: message.into(), data: None })
 }
 
-/// What can be written as JSON; most of it with serde.
+/// Values that can be written as JSON; most of them with serde.
 pub(crate) trait WriteJson {
     /// Appends its JSON text.
     fn write_json(&self, json: &mut Vec<u8>) -> serde_json::Result<()>;

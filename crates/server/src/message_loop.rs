@@ -24,7 +24,7 @@ use crate::session::{Ending, Session};
 /// So many bytes may wait to be written before no more requests are answered: more than any usual answer.
 const MOST_UNWRITTEN: usize = 16 << 20;
 
-/// How long the last messages may take to be written once the session has ended.
+/// The time for writing the last messages once the session has ended.
 const LAST_WORDS: Duration = Duration::from_secs(1);
 
 impl From<Ending> for ExitCode {
@@ -126,7 +126,7 @@ fn handle(session: &mut Session, frame: Frame) -> Option<Ending> {
     }
 }
 
-/// Whether a message may be `shutdown` or `exit`; those are short.
+/// Returns whether a message may be `shutdown` or `exit`; those are short.
 fn is_end(frame: &Frame) -> bool {
     matches!(frame, Frame::Body(body) if body.len() < 200
         && (contains(body, b"\"shutdown\"") || contains(body, b"\"exit\"")))

@@ -24,7 +24,7 @@ use crate::state::State;
 #[cfg(feature = "process")]
 use crate::web::WebServer;
 
-/// How far a session is, which decides which messages it takes.
+/// The stage of a session, which decides which messages it takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Stage {
     /// Before `initialize`.
@@ -72,7 +72,7 @@ impl Server {
         }
     }
 
-    /// How far the session is.
+    /// Returns the stage of the session.
     pub(crate) fn stage(&self) -> Stage {
         *self.stage.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -136,7 +136,7 @@ impl Server {
     }
 }
 
-/// What handlers start, and goes on while other messages are handled.
+/// Tasks that handlers start and that continue while other messages are handled.
 impl Server {
     /// Reads the client's settings, where the client can be asked.
     pub(crate) async fn ask_for_settings(&self) {
@@ -217,7 +217,7 @@ impl Server {
     }
 }
 
-/// What the session calls.
+/// Methods for the session.
 impl Server {
     /// Sends the client what the messages handled so far have changed.
     pub(crate) fn flush_diagnostics(&self) {

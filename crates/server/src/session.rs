@@ -27,7 +27,7 @@ use crate::pending::PendingRequests;
 use crate::server::{Server, Stage};
 use crate::state::State;
 
-/// How a session ended.
+/// The way in which a session ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ending {
     /// `shutdown`, then `exit`.
@@ -99,7 +99,7 @@ impl Session {
         self.server.state().set_options(launch.options);
     }
 
-    /// What the session's handlers share.
+    /// Returns the server that the session's handlers share.
     #[cfg(feature = "process")]
     pub(crate) fn server(&self) -> &Server {
         &self.server
@@ -149,7 +149,7 @@ impl Session {
         let method = request.method().to_owned();
         let started = catch_unwind(AssertUnwindSafe(|| {
             let mut reply = self.service.call(request);
-            // Whoever runs the rest polls it again, with a waker.
+            // The executor of the rest polls it again, with a waker.
             match reply.poll_unpin(&mut Context::from_waker(Waker::noop())) {
                 Poll::Ready(outcome) => Ok(outcome),
                 Poll::Pending => Err(reply),

@@ -10,7 +10,8 @@ use std::time::Duration;
 use pydslrep_analysis::CancellationToken;
 use pydslrep_workspace::Workspace;
 
-/// How long a change waits for readers to stop before it copies the workspace, which takes some milliseconds itself.
+/// The time that a change waits for readers to stop before it copies the workspace, which takes some milliseconds
+/// itself.
 const PATIENCE: Duration = Duration::from_millis(20);
 
 /// A workspace that can be lent to readers.
@@ -18,7 +19,7 @@ const PATIENCE: Duration = Duration::from_millis(20);
 pub(crate) struct SharedWorkspace {
     workspace: Arc<Workspace>,
     readers: Arc<Readers>,
-    /// How many changes there have been.
+    /// The number of changes.
     changes: u64,
     /// For a reader's own copy: ends the loan.
     loan: Option<Loan>,
@@ -48,7 +49,7 @@ impl SharedWorkspace {
         self.changes
     }
 
-    /// The workspace for a reader, and the token that tells it that the workspace has changed.
+    /// The workspace for a reader, and the token that is cancelled when the workspace changes.
     pub(crate) fn lend(&self) -> (Self, CancellationToken) {
         let token = CancellationToken::default();
         self.readers.lock().push(token.clone());
@@ -65,7 +66,7 @@ impl SharedWorkspace {
     /// Ends a reader's turn.
     pub(crate) fn give_back(&mut self) {
         if let Some(loan) = self.loan.take() {
-            // The workspace first, so that whoever waits for the end of the loan is its only owner.
+            // The workspace first, so that the thread that waits for the end of the loan is its only owner.
             self.workspace = Arc::new(Workspace::new(self.workspace.files()));
             drop(loan);
         }

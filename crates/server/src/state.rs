@@ -1,4 +1,4 @@
-//! What the server knows between two messages.
+//! The server's state between two messages.
 
 use std::sync::Arc;
 
@@ -35,27 +35,27 @@ use crate::work::{FileWork, SHORT, Work};
 /// Documents, their analysis, and what the client can do.
 #[derive(Debug)]
 pub(crate) struct State {
-    /// What the client can do.
+    /// The features of the client.
     pub(crate) client: ClientFeatures,
     /// The documents that are open in the client, the files around them, and their analysis.
     pub(crate) workspace: SharedWorkspace,
-    /// What wins over the client's settings: how the server was started.
+    /// Options of the server's command line, which override the client's settings.
     options: Config,
     /// The files that the client provides, where there is no disk.
     pub(crate) provided: Option<Arc<MemoryFiles>>,
-    /// What the client has of documents, by their keys.
+    /// The client's state of documents, by their keys.
     pub(crate) clients: FxHashMap<String, ClientDocument>,
-    /// What has changed since diagnostics were last published, as far as the workspace was asked already.
+    /// The changes since diagnostics were last published, as far as they were already taken from the workspace.
     changes: Changes,
     /// Documents that were closed since diagnostics were last published.
     pub(crate) closed: Vec<Uri>,
-    /// How many answers have been given a number so far.
+    /// The number of answers that have got a number.
     pub(crate) answers: u64,
-    /// How many times a document has been opened.
+    /// The number of times that documents have been opened.
     openings: u64,
-    /// How many progress reports have begun; each needs its own token.
+    /// The number of progress reports; each needs its own token.
     pub(crate) progresses: u64,
-    /// Whether the client wants to know what changes cost.
+    /// The trace level; if it is verbose, the client gets the cost of changes.
     pub(crate) trace: TraceValue,
     /// The cost of each change of the last message, if the trace is verbose.
     pub(crate) costs: Vec<EditCounts>,
@@ -69,9 +69,9 @@ pub(crate) struct State {
     pub(crate) watched: Vec<Watched>,
     /// Where the user is typing, if known.
     pub(crate) typing: Option<Typing>,
-    /// What the client must request again although it did not change it.
+    /// The hints and lenses that the client must request again although it did not change them.
     pub(crate) outdated: Outdated,
-    /// How many refreshes have been requested.
+    /// The number of refreshes requested.
     refreshes: u64,
     /// Paths that were driven.
     pub(crate) driven: DrivenPaths,
@@ -79,7 +79,7 @@ pub(crate) struct State {
     pub(crate) pages: Pages,
 }
 
-/// What the client shows that is no longer so.
+/// The outdated items that the client shows.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Outdated {
     /// Inlay hints.
@@ -195,7 +195,7 @@ impl State {
         places.iter().filter_map(statement).collect()
     }
 
-    /// Whether the next word of a statement being typed will settle an error.
+    /// Returns whether the next word of a statement being typed will settle an error.
     pub(crate) fn is_error_unsettled(&self) -> bool {
         let Some(document) = self.typing.as_ref().and_then(|typing| self.document_at(&typing.key)) else {
             return false;
@@ -207,7 +207,7 @@ impl State {
         errors.any(|error| statements.iter().any(|statement| statement.settles(error)))
     }
 
-    /// What has changed in the workspace since this was last asked.
+    /// Returns the changes in the workspace since the last call.
     pub(crate) fn take_changes(&mut self) -> Changes {
         self.note_changes();
         std::mem::take(&mut self.changes)
@@ -229,7 +229,7 @@ impl State {
     }
 
     /// The state as it is now for a request about a document that goes on beside the message loop, and the token that
-    /// tells it that the workspace has changed. It has what is kept for such requests, which [`Self::take_back`] returns.
+    /// is cancelled when the workspace changes. It has what is kept for such requests, which [`Self::take_back`] returns.
     pub(crate) fn lend(&mut self, key: &str) -> (Self, CancellationToken) {
         let (workspace, token) = self.workspace.lend();
         let mut clients: FxHashMap<String, ClientDocument> =
@@ -293,7 +293,8 @@ impl State {
         }
     }
 
-    /// Whether this is the first request for completion since the text changed at this place; from now on it is not.
+    /// Returns whether this is the first request for completion since the text changed at this place; from now on it is
+    /// not.
     pub(crate) fn is_first_completion_after_typing(&mut self, at: &TextDocumentPositionParams) -> bool {
         let key = key(&at.text_document.uri);
         let Some(document) = self.workspace.document(&key) else { return false };
@@ -389,7 +390,7 @@ impl State {
         self.document_at(&key(uri))
     }
 
-    /// Whether a program is at an address.
+    /// Returns whether a program is at an address.
     pub(crate) fn is_program(&self, uri: &Uri) -> bool {
         self.document(uri).is_some_and(|document| document.kind == DocumentKind::Program)
     }
@@ -414,7 +415,7 @@ impl State {
         }))
     }
 
-    /// What a position in a document points at.
+    /// Returns the location in a program that a position of the client refers to.
     pub(crate) fn place(&self, at: &TextDocumentPositionParams) -> Option<Place<'_>> {
         let (document, file) = self.analysed(&at.text_document.uri)?;
         Some(Place { document, file, offset: self.offset(document, at.position) })

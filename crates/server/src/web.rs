@@ -1,4 +1,4 @@
-//! A web server for one page on this machine: on loopback, and only for whoever knows its address, which has a random
+//! A web server for one page on this machine: on loopback, and only for clients that know its address, which has a random
 //! secret. Other pages, which know neither, get nothing: what is not allowed is answered like what does not exist.
 //!
 //! Passes messages on and knows nothing of what they mean.
@@ -36,24 +36,25 @@ const SECRET_BYTES: usize = 16;
 /// The longest message of a page.
 const MOST_BYTES: usize = 64 << 10;
 
-/// How long a request may take to arrive, its head and its body each.
+/// The time in which the head of a request has to arrive, and its body again.
 const PATIENCE: Duration = Duration::from_secs(3);
 
-/// How many connections may be open; a browser opens six for one page. Others wait until the slow ones are dropped, and are
-/// told so if none is.
+/// The maximum number of open connections; a browser opens six for one page. Others wait until the slow ones are dropped, and
+/// are refused if none is.
 const MOST_CONNECTIONS: usize = 128;
 
-/// How many may wait for that. Still others are closed.
+/// The maximum number of connections that wait for that. Still others are closed.
 const MOST_WAITING: usize = 128;
 
-/// What one is told that has waited in vain.
+/// The answer to a connection that has waited in vain.
 const FULL: &str = "HTTP/1.1 503 Service Unavailable\r\nContent-Type: text/plain\r\nContent-Length: 62\r\n\
     Connection: close\r\n\r\nToo many pages are connected to the preview: close some first\n";
 
-/// How many events may wait for a page that is slow to read.
+/// The maximum number of events that wait for a page that is slow to read.
 const MOST_EVENTS: usize = 256;
 
-/// What every answer says: nothing is loaded from elsewhere, nothing shows the page in a frame, and no copy is kept.
+/// The headers of every answer: nothing is loaded from elsewhere, nothing shows the page in a frame, and no copy is
+/// kept.
 const HEADERS: [(HeaderName, &str); 6] = [
     (
         header::CONTENT_SECURITY_POLICY,
@@ -78,7 +79,7 @@ pub(crate) struct File {
 /// Answers a message of a page.
 type Answer = Box<dyn Fn(&[u8]) -> Vec<u8> + Send + Sync>;
 
-/// What a page is given.
+/// The files, events and answers that pages get.
 pub(crate) struct Site {
     pub(crate) files: &'static [File],
     /// The first event of a page; later ones come from [`Sender::send`].
@@ -172,7 +173,7 @@ type Body = UnsyncBoxBody<Bytes, Infallible>;
 
 /// Decides who may enter.
 struct Door {
-    /// What the address has for `Host`: a name that leads here has another one.
+    /// The `Host` of the address; a name that resolves to this machine has another one.
     host: String,
     origin: String,
     secret: String,
@@ -249,7 +250,7 @@ impl Door {
         }
     }
 
-    /// What a request asks for; `None` if it must not be answered.
+    /// Returns the path of a request, without the secret; `None` if it must not be answered.
     fn name<'a>(&self, request: &'a Request<Incoming>) -> Option<&'a str> {
         let headers = request.headers();
         // A page elsewhere that has its own name lead here sends that name.

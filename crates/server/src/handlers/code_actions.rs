@@ -63,7 +63,7 @@ pub(crate) fn announce(server: &mut ServerCapabilities, client: &ClientFeatures)
     server.code_action_provider = Some(options.into());
 }
 
-/// What the editor asks for by itself is about the line of the cursor.
+/// Records the cursor: requests that the editor sends by itself are about the cursor's line.
 pub(crate) fn note_cursor(state: &mut State, params: &CodeActionParams) {
     let cursor = TextDocumentPositionParams::new(params.text_document.clone(), params.range.end);
     state.note_cursor(&cursor);
@@ -204,7 +204,7 @@ fn scene_action(state: &State, offer: ide::SceneAction) -> Option<CodeAction> {
         (format!("Add {} to {file_name}", added.join(", ")), edits.finish(state))
     } else {
         let key = state.workspace.scene_key(program, &environment)?;
-        // What cannot be read is no reason to replace it.
+        // A file that cannot be read is not replaced.
         if !state.client.create_files || state.workspace.is_file(&key) {
             return None;
         }

@@ -28,10 +28,10 @@ const OF_ENVIRONMENTS: &[(IsShown, &str, &str)] = &[
     (|wanted| wanted.generate_script, "Generate script", GENERATE_SCRIPT),
 ];
 
-/// Whether a lens is shown.
+/// Returns whether the settings show a lens.
 type IsShown = fn(&Wanted) -> bool;
 
-/// Whether the references of a kind are shown; `None` for environments, which have none.
+/// Returns whether the references of a kind are shown; `None` for environments, which have none.
 fn shows_references(wanted: &Wanted, kind: EntityKind) -> Option<bool> {
     match kind {
         EntityKind::Wheel => Some(wanted.wheels),

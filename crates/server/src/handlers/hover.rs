@@ -33,7 +33,7 @@ pub(crate) fn show_kinematics(state: &State, RobotOf { uri, robot }: &RobotOf) -
     Ok(Some(found.markdown.into()))
 }
 
-/// What is known about the thing at a position.
+/// Returns the hover at a position.
 pub(crate) fn hover(state: &State, params: &HoverParams) -> Option<Hover> {
     let at = &params.text_document_position_params;
     let (document, found) = if let Some((document, file, text)) = state.toml_text(&at.text_document.uri) {

@@ -120,7 +120,7 @@ fn fingerprint(state: &State, which: &ChosenEnvironment) -> Option<Fingerprint> 
     state.database().fingerprint(environment(state, which).ok()?)
 }
 
-/// Whether its audience has the path as it is now.
+/// Returns whether the audience has the current path.
 fn is_sent(state: &State, watched: &Watched) -> bool {
     match &watched.sent {
         Sent::Path(path) => plan(state, &watched.which).as_ref() == Ok(path),
@@ -141,7 +141,7 @@ pub(crate) fn announce(state: &mut State, outbox: &Outbox) {
             watched.fingerprint = fingerprint;
             state.watched.push(watched);
         } else if state.is_error_unsettled() && plan(state, &watched.which).is_err() {
-            // What was sent stays until the line is left.
+            // The path last sent stays until the line is left.
             state.watched.push(watched);
         } else {
             match watched.audience {

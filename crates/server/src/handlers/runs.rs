@@ -44,19 +44,19 @@ struct ProgramCopy {
     program: PathBuf,
 }
 
-/// How a printed error begins.
+/// The prefix of a printed error.
 const ERROR: &str = "error: ";
 
 /// The exit code of a child that was interrupted.
 const INTERRUPTED: i32 = 130;
 
-/// What to start.
+/// A command to start.
 #[derive(Debug)]
 pub(crate) struct Job {
     copy: ProgramCopy,
     environment: String,
     subcommand: &'static str,
-    /// What is drawn, as part of the picture's name.
+    /// The drawing that it makes, as part of the picture's name.
     what: &'static str,
 }
 

@@ -18,7 +18,7 @@ use crate::session::{Ending, Session};
 /// The most bytes of messages that are kept; then the client has to wait until it has read something.
 const MOST_BYTES: usize = 64 << 20;
 
-/// What is read from the client; `None` is the end.
+/// A frame read from the client; `None` is the end.
 type Input = io::Result<Option<Frame>>;
 
 /// Messages that were read and not handled yet.

@@ -10,7 +10,7 @@ use tower_lsp::ls_types::{ProgressToken, WorkDoneProgressCreateParams, request};
 use crate::children::{ChildEvent, KillOnDrop, Running};
 use crate::server::Server;
 
-/// How many lines of a failed child's output are part of the error.
+/// The maximum number of lines of a failed child's output that are part of the error.
 const MOST_LINES: usize = 50;
 
 /// A child that has ended.
@@ -22,11 +22,11 @@ pub(super) struct Ended {
     pub(super) printed: String,
     /// The end of what it said on standard error, in lines.
     pub(super) said: Vec<String>,
-    /// What a run has reported.
+    /// The report of a run.
     pub(super) report: Report,
 }
 
-/// What is left of the events of a run in its end.
+/// The events of a run that matter at its end.
 #[derive(Debug, Default)]
 pub(super) struct Report {
     /// The result in numbers.
@@ -63,7 +63,7 @@ impl Report {
     }
 }
 
-/// What a child tells while it runs.
+/// The form in which a child reports progress.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Tells {
     /// Lines on standard error.

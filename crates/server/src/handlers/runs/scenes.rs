@@ -41,12 +41,12 @@ const MOST_FINDINGS: usize = 3;
 pub(crate) struct Push {
     #[serde(flatten)]
     which: ChosenEnvironment,
-    /// Whether to replace what was built before, without a question.
+    /// True if an earlier build is replaced without asking.
     #[serde(default)]
     replace: bool,
 }
 
-/// What `pydslrep` prints with `--json`.
+/// The output of `pydslrep` with `--json`.
 #[derive(Debug, Deserialize)]
 #[serde(untagged)]
 enum Printed<T> {
@@ -167,12 +167,12 @@ pub(crate) async fn check(
     Ok(Some(serde_json::json!({ "findings": findings })))
 }
 
-/// What to start.
+/// A command to start.
 #[derive(Debug, Clone, Copy)]
 struct Child<'a> {
     task: &'a [&'a str],
     options: &'a [&'a str],
-    /// Whether it is about a program, and not only about an environment's name.
+    /// True if it is about a program, not only about an environment's name.
     has_program: bool,
 }
 
@@ -207,7 +207,7 @@ impl Child<'_> {
     }
 }
 
-/// Whether to replace what was built before.
+/// Asks whether to replace an earlier build.
 fn question(place: &str, error: &str) -> ShowMessageRequestParams {
     let answer = |title: &str| MessageActionItem { title: title.to_owned(), properties: HashMap::new() };
     ShowMessageRequestParams {
