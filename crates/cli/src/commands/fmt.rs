@@ -43,7 +43,7 @@ pub(crate) struct Arguments {
 struct Formatted {
     source: Source,
     text: String,
-    /// Whether mistakes kept a part of it from being laid out.
+    /// True if errors kept a part of it from being formatted.
     has_errors: bool,
 }
 

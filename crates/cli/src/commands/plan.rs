@@ -251,7 +251,7 @@ struct JsonCollision<'a> {
     with: JsonThing<'a>,
 }
 
-/// What a robot collides with.
+/// The other side of a collision.
 #[derive(Serialize)]
 #[serde(rename_all = "snake_case")]
 enum JsonThing<'a> {
@@ -267,7 +267,7 @@ struct JsonRobot<'a> {
     /// The ways that it may take from there, as far as they have a bound: ends of actions, in order.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     possible: Vec<Vec<JsonPose<'a>>>,
-    /// Whether more actions are planned than are listed.
+    /// True if more actions are planned than are listed.
     #[serde(skip_serializing_if = "is_false")]
     truncated: bool,
 }

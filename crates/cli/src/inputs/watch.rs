@@ -14,7 +14,7 @@ use tokio::time::timeout;
 
 use crate::failure::Failure;
 
-/// How long changes must pause before the next check: editors save in several steps.
+/// The pause in changes before the next check: editors save in several steps.
 const QUIET: Duration = Duration::from_millis(50);
 
 /// A check starts after this many events even if they do not pause.

@@ -32,7 +32,7 @@ pub(crate) fn print_raw(text: &str) -> Result<(), Failure> {
 }
 
 fn unprinted(error: &io::Error) -> Failure {
-    /// What Windows says of a pipe that its reader has closed (`ERROR_PIPE_NOT_CONNECTED`).
+    /// The error code of Windows for a pipe that its reader has closed (`ERROR_PIPE_NOT_CONNECTED`).
     const NOT_CONNECTED: i32 = 233;
     match error.kind() {
         io::ErrorKind::BrokenPipe => Failure::NoReader,

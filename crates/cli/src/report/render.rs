@@ -95,7 +95,7 @@ fn fix<'a>(inputs: &'a Inputs, fix: &'a Fix) -> Group<'a> {
     let Some(file) = fix.edits.first().map(|edit| edit.file) else {
         return Group::with_title(title);
     };
-    // What a fix changes in other files is seen there.
+    // Only the edits in this file are shown.
     let edits: Vec<_> = fix.edits.iter().filter(|edit| edit.file == file).collect();
     let window = Window::about(inputs.database(), file, edits.iter().map(|edit| edit.span));
     let patches: Vec<Patch> = edits

@@ -1,4 +1,4 @@
-//! What a run reports: to people on the terminal, and to programs as events (`docs/run-events.md`).
+//! Reports of a run: to people on the terminal, and to programs as events (`docs/run-events.md`).
 
 use std::cell::RefCell;
 use std::fs::File;
@@ -15,7 +15,7 @@ use crate::run::outcome::Figures;
 /// The name of standard output, in place of a file's.
 pub(crate) const STANDARD_OUTPUT: &str = "-";
 
-/// Whether this is standard output, and no file.
+/// Returns whether a path stands for standard output.
 pub(crate) fn is_standard_output(path: &Path) -> bool {
     path.as_os_str() == STANDARD_OUTPUT
 }
@@ -76,7 +76,7 @@ impl Reporter {
         self.write(&RunEvent::Warning { text: text.to_owned(), help: help.map(str::to_owned) });
     }
 
-    /// Tells programs of a failure that people read of elsewhere.
+    /// Reports a failure to programs only; people read of it elsewhere.
     pub(crate) fn fail(&self, failure: &Failure) {
         if let Failure::Message { message, help, .. } = failure {
             let failure = RunFailure::new(FailureClass::Setup, message);
@@ -84,7 +84,7 @@ impl Reporter {
         }
     }
 
-    /// Tells programs that the program has errors, which people read on standard error.
+    /// Reports errors of the program to programs only; people read them on standard error.
     pub(crate) fn refuse(&self, message: &str) {
         self.write(&RunEvent::Failed(RunFailure::new(FailureClass::Program, message)));
     }

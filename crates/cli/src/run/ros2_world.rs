@@ -28,18 +28,18 @@ const STOP_LIMIT: Duration = Duration::from_secs(5);
 /// At most this much of what it says is read, bytes.
 const MAX_STDERR: u64 = 1 << 16;
 
-/// What the node is like.
+/// Options of the node.
 #[derive(Debug, Clone)]
 pub(crate) struct Choice<'a> {
     /// The Python that can import rclpy.
     pub(crate) python: Option<&'a Path>,
     /// Simulated seconds per second.
     pub(crate) speed: f64,
-    /// Whether a script steps the world.
+    /// True if a script steps the world.
     pub(crate) lockstep: bool,
 }
 
-/// What moves the robots of a node.
+/// The engine that moves the robots of a node.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum World<'a> {
     /// The embedded simulator, with a port for each robot, and what it knows the node by.

@@ -1,4 +1,4 @@
-//! What moving obstacles of the embedded simulator have run into.
+//! Warnings of robots that moving obstacles of the embedded simulator have run into.
 
 use std::collections::BTreeMap;
 

@@ -20,7 +20,7 @@ use crate::run::scene_tasks::carry_out_in_own_python;
 
 const MODULE: &str = "pydslrep_runtime.ros2_tasks";
 
-/// What stands in the table where there is nothing.
+/// The table cell for a missing value.
 const NOTHING: &str = "–";
 
 #[derive(Debug, Serialize)]
@@ -31,15 +31,15 @@ struct Request {
 
 #[derive(Debug, Deserialize)]
 struct Answer {
-    /// Whether there is anything of others.
+    /// True if topics of other nodes were found.
     reached: bool,
     topics: Vec<Topic>,
     findings: Vec<Finding>,
-    /// What a turn has shown.
+    /// The findings of the test drive.
     notes: Vec<String>,
 }
 
-/// What is there of a topic.
+/// A topic, as far as it is known.
 #[derive(Debug, Deserialize)]
 struct Topic {
     #[serde(rename = "topic")]

@@ -37,7 +37,7 @@ pub(crate) struct Arguments {
 #[derive(Debug, Deserialize)]
 struct Answer {
     scene: Pulled,
-    /// What was not understood.
+    /// The parts of the scene that were not recognised.
     unclear: Vec<String>,
 }
 
