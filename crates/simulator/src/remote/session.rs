@@ -58,7 +58,7 @@ pub struct Session {
     seen: Sightings,
     /// The number of steps that clients may still take; `None` is unlimited.
     allowance: Option<u32>,
-    /// What the id of every client must begin with.
+    /// The prefix that every client's id must have.
     token: Option<String>,
     /// The connections of clients that were refused.
     strangers: BTreeSet<u64>,
@@ -161,7 +161,7 @@ impl Session {
         self.token = Some(token.to_owned());
     }
 
-    /// How many connections had clients that were refused.
+    /// Returns the number of connections whose clients were refused.
     pub fn strangers(&self) -> usize {
         self.strangers.len()
     }
@@ -179,7 +179,7 @@ impl Session {
         self.step_if_ready()
     }
 
-    /// Whether real time decides when steps are taken: no client steps, or steps are paced.
+    /// Returns whether real time decides when steps are taken: no client steps, or steps are paced.
     pub fn is_timed(&self) -> bool {
         self.state == State::Running && (self.allowance.is_some() || self.is_free_running())
     }
@@ -204,7 +204,7 @@ impl Session {
         self.clients.len() + self.legacy.len()
     }
 
-    /// Whether the simulation runs freely: no client steps it.
+    /// Returns whether the simulation runs freely: no client steps it.
     pub fn is_free_running(&self) -> bool {
         let nobody_steps = self.clients.values().all(|client| client.level == 0)
             && !self.legacy.values().any(LegacyClient::is_synchronous);
@@ -244,7 +244,7 @@ impl Session {
         answers
     }
 
-    /// Whether the server answers nothing at the moment.
+    /// Returns whether the server answers nothing at the moment.
     fn is_silent(&self) -> bool {
         self.state == State::Paused && self.server.is_silent_while_paused()
     }

@@ -28,7 +28,7 @@ pub struct Strike {
     pub pose: Pose,
     /// The index of the obstacle in the scene.
     pub obstacle: usize,
-    /// Whether the robot's wheels were turning.
+    /// True if the robot's wheels were turning.
     pub was_driving: bool,
 }
 
@@ -52,7 +52,7 @@ pub(super) struct Mover {
     contacts: Vec<Contact>,
 }
 
-/// What an obstacle does to a robot.
+/// The contact of an obstacle with a robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 enum Contact {
     #[default]
@@ -77,7 +77,7 @@ impl Mover {
         movers.collect()
     }
 
-    /// Whether it covers a part of a robot, which cannot move then.
+    /// Returns whether it covers a part of a robot, which cannot move then.
     pub(super) fn covers(&self, robot: usize) -> bool {
         self.contacts.get(robot) == Some(&Contact::Covered)
     }
