@@ -12,7 +12,7 @@ use crate::WriteError;
 use crate::kind::Kind;
 use crate::whole::{folder_of, try_folder};
 
-/// What is in the place of an output.
+/// The state of an output's location.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Found {
     /// Nothing, or what this program made.
@@ -160,7 +160,7 @@ mod tests {
             ("in", 1, true),
             ("in/new", 2, true),
             ("new", 1, true),
-            // Whoever names the folder on the command line may mean what is elsewhere.
+            // A user who names the folder on the command line may mean one that is elsewhere.
             ("out", 0, true),
         ] {
             assert_eq!(check_inside(&folder(name), depth).is_ok(), is_inside, "{name}");

@@ -22,10 +22,10 @@ const MAX_FILES: usize = 10_000;
 /// More processes than this rarely write the same package at the same moment.
 const MAX_ATTEMPTS: usize = 16;
 
-/// What Python keeps in packages.
+/// The folders of Python's caches in packages.
 const CACHES: &str = "__pycache__";
 
-/// What became of the package's folder.
+/// The result for the package's folder.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum RuntimeFolder {
     /// It was missing and is written.
@@ -50,7 +50,7 @@ pub enum RuntimeFolder {
 pub struct Kept {
     /// The folder.
     path: PathBuf,
-    /// The changed file, as a path in the folder; `None` if nothing tells what was written.
+    /// The changed file, as a path in the folder; `None` if there is no record of what was written.
     changed: Option<String>,
 }
 
@@ -65,7 +65,7 @@ impl fmt::Display for Kept {
 }
 
 impl Kept {
-    /// What to do about it.
+    /// Returns advice.
     pub fn help(&self) -> String {
         format!(
             "delete it to have version {VERSION} written, or set `write-runtime = false` in pydslrep.toml to keep it"
@@ -144,12 +144,12 @@ pub fn provide_runtime(cache: &Path) -> Result<PathBuf, WriteError> {
     Ok(folder)
 }
 
-/// What is in the place of the package's folder.
+/// The state of the package's folder.
 enum Found {
     Nothing,
     /// This version, unchanged.
     Current,
-    /// What some version of ours wrote, perhaps with other files, and perhaps not all of it.
+    /// Files by some version of ours, perhaps with others, and perhaps not all of them.
     Ours {
         version: String,
         /// Files that somebody added.
@@ -191,7 +191,7 @@ fn inspect(path: &Path, current: &Record) -> io::Result<Found> {
     Ok(Found::Ours { version: record.version, added })
 }
 
-/// Whether a file has the content with this hash.
+/// Returns whether a file has the content with this hash.
 fn has(path: &Path, name: &str, hash: &str) -> bool {
     read(path, name).is_ok_and(|content| sha256(&content) == *hash)
 }
