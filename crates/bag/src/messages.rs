@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::BagError;
 
-/// What is between the definitions of a message and of those that it consists of.
+/// The separator between the definition of a message and those of its parts.
 const RULE: &str = "================================================================================";
 
 /// A type of messages.
@@ -69,7 +69,7 @@ pub(crate) const PATH: MessageType = MessageType {
     parts: &[HEADER, TIME, POSE_STAMPED, POSE, POINT, QUATERNION],
 };
 
-/// What a distance sensor measures.
+/// The measurement of a distance sensor.
 pub(crate) const RANGE: MessageType = MessageType {
     name: "sensor_msgs/msg/Range",
     fields: "uint8 ULTRASOUND=0\nuint8 INFRARED=1\nstd_msgs/Header header\nuint8 radiation_type\n\
@@ -227,7 +227,7 @@ impl Range {
     }
 }
 
-/// What precedes the content of a message: its representation, and two bytes for options.
+/// The bytes before the content of a message: its representation, and two bytes for options.
 const LITTLE_ENDIAN: [u8; 4] = [0, 1, 0, 0];
 const BIG_ENDIAN: [u8; 4] = [0, 0, 0, 0];
 
