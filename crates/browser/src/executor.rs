@@ -33,7 +33,7 @@ impl Arrivals {
     }
 }
 
-/// Whether a future can go on.
+/// True if a future can continue.
 #[derive(Debug, Default)]
 struct Wakefulness(AtomicBool);
 

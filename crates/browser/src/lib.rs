@@ -139,7 +139,7 @@ impl Simulator {
         replies(self.0.session.expire_clients(simulation::duration(now)))
     }
 
-    /// Whether the simulation runs and no client steps it: then time passes with [`Self::tick`].
+    /// Returns whether the simulation runs and no client steps it: then time passes with [`Self::tick`].
     #[wasm_bindgen(getter, js_name = isFreeRunning)]
     pub fn is_free_running(&self) -> bool {
         self.0.session.is_free_running()
