@@ -32,7 +32,7 @@ impl Failure {
         Self::Message { message: message.into(), help: None, reason: None }
     }
 
-    /// Adds what to do about it.
+    /// Adds advice.
     pub(crate) fn help(self, help: impl Into<String>) -> Self {
         match self {
             Self::Message { message, reason, .. } => {

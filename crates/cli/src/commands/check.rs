@@ -1,4 +1,4 @@
-//! `pydslrep check`: what is wrong with programs.
+//! `pydslrep check`: the problems of programs.
 
 mod watching;
 

@@ -90,7 +90,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     }))
 }
 
-/// Writes what changes to where it came from.
+/// Writes changed programs back.
 fn write(programs: &[Formatted], failures: &mut Vec<Failure>) -> Result<(), Failure> {
     let (mut changed, mut unchanged) = (0, 0);
     for program in programs {

@@ -148,12 +148,12 @@ fn table(planned: &Planned) -> String {
     if let Some(wheels) = table.column_mut(last).filter(|_| is_narrow) {
         wheels.set_constraint(ColumnConstraint::Hidden);
     }
-    let met: String = collisions(&planned.scene, &planned.plan)
+    let contacts: String = collisions(&planned.scene, &planned.plan)
         .iter()
         .map(|collision| output::wrapped(&meeting(planned, collision)) + "\n")
         .collect();
-    let met = if met.is_empty() { met } else { met + "\n" };
-    format!("{title}\n\n{}\n\n{met}", table.trim_fmt())
+    let contacts = if contacts.is_empty() { contacts } else { contacts + "\n" };
+    format!("{title}\n\n{}\n\n{contacts}", table.trim_fmt())
 }
 
 /// Text wrapped to a width; continuation lines keep its indentation and two columns more.

@@ -323,9 +323,9 @@ impl Run<'_> {
         let ending = drive(&script, listener, &mut interrupts).await;
         let wall = begin.elapsed();
         progress.clear();
-        let strangers = simulator.as_ref().map_or(0, Simulator::strangers);
-        if strangers > 0 {
-            let others = output::count(strangers, "connection");
+        let refused = simulator.as_ref().map_or(0, Simulator::refused_connections);
+        if refused > 0 {
+            let others = output::count(refused, "connection");
             let refused = format!("{others} of other programs to the simulator of this run refused");
             self.reporter.warn(&refused, None);
         }

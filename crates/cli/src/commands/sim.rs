@@ -107,7 +107,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     }
 }
 
-/// Refuses what `MuJoCo` cannot do: it has no ports, and is in the process of the node.
+/// Refuses options that `MuJoCo` does not have: it has no ports, and is in the process of the node.
 fn check_mujoco(arguments: &Arguments) -> Result<(), Failure> {
     if !arguments.ros2 {
         return Err(Failure::new("--engine mujoco has no ports for scripts: it needs --ros2")

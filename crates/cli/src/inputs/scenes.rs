@@ -1,4 +1,4 @@
-//! The scenes that environments are driven in, and what is wrong with them.
+//! The scenes that environments are driven in, and their problems.
 
 use std::collections::BTreeSet;
 use std::path::Path;

@@ -18,7 +18,7 @@ use crate::failure::Failure;
 const QUIET: Duration = Duration::from_millis(50);
 
 /// A check starts after this many events even if they do not pause.
-const MOST_EVENTS: usize = 10_000;
+const MAX_EVENTS: usize = 10_000;
 
 /// The files and folders to watch.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -80,7 +80,7 @@ impl Watch {
                 break;
             }
         }
-        for _ in 0..MOST_EVENTS {
+        for _ in 0..MAX_EVENTS {
             if timeout(QUIET, self.events.recv()).await.is_err() {
                 break;
             }

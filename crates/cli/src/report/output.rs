@@ -73,17 +73,17 @@ pub(crate) fn fail(failure: &Failure) {
     }
 }
 
-/// Reports an error and what to do about it.
+/// Reports an error, with advice.
 pub(crate) fn error(message: &str, help: Option<&str>) {
     report(&Level::ERROR, message, help);
 }
 
-/// Reports what did not keep a command from being carried out, and what to do about it.
+/// Reports a warning, with advice.
 pub(crate) fn warning(message: &str, help: Option<&str>) {
     report(&Level::WARNING, message, help);
 }
 
-/// Reports what is worth knowing.
+/// Reports a note.
 pub(crate) fn note(message: &str) {
     report(&Level::NOTE, message, None);
 }

@@ -1,4 +1,4 @@
-//! Problems for people: the source line, carets, related places, and what a fix would write.
+//! Problems for people: the source line, carets, related places, and the text of fixes.
 
 use std::ops::Range;
 
@@ -88,7 +88,7 @@ fn snippets<'a>(inputs: &'a Inputs, diagnostic: &'a Diagnostic) -> Vec<Element<'
     files.into_iter().map(snippet).collect()
 }
 
-/// A fix with what it would write. What `--fix` would do goes by another name than what a person should look at first.
+/// A fix with the text that it would write. Fixes that `--fix` applies are named differently from those to look at first.
 fn fix<'a>(inputs: &'a Inputs, fix: &'a Fix) -> Group<'a> {
     let name = if fix.safe { "fix" } else { "suggestion" };
     let title = Level::HELP.with_name(name).secondary_title(&fix.title);

@@ -35,7 +35,7 @@ const RESERVED: &AsciiSet = &CONTROLS
 /// The problems as one log with one run.
 ///
 /// # Errors
-/// Never, with what is handed in here.
+/// Never, with the values passed here.
 pub(crate) fn log(
     inputs: &Inputs,
     diagnostics: &[Diagnostic],

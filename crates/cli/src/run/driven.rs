@@ -46,7 +46,7 @@ impl Driven {
         }
     }
 
-    /// Adds what the simulator recorded.
+    /// Adds the records of the simulator.
     pub(crate) fn extend(&mut self, records: &[TraceRecord]) {
         for record in records {
             self.add(record);

@@ -99,12 +99,12 @@ impl Progress {
         self.show_tasks();
     }
 
-    /// Prints what is worth knowing, above the bars.
+    /// Prints a note above the bars.
     pub(crate) fn note(&self, text: &str) {
         self.bars.suspend(|| output::note(text));
     }
 
-    /// Prints what is wrong, above the bars.
+    /// Prints a warning above the bars.
     pub(crate) fn warn(&self, text: &str, help: Option<&str>) {
         self.bars.suspend(|| output::warning(text, help));
     }

@@ -70,7 +70,7 @@ impl Reporter {
         self.write(&RunEvent::Progress { t: None, robot: None, text: text.to_owned() });
     }
 
-    /// Warns of what does not keep the run from going on.
+    /// Reports a warning: the run continues.
     pub(crate) fn warn(&self, text: &str, help: Option<&str>) {
         output::warning(text, help);
         self.write(&RunEvent::Warning { text: text.to_owned(), help: help.map(str::to_owned) });
@@ -92,12 +92,12 @@ impl Reporter {
     /// Reports why a script ended.
     pub(crate) fn report_failure(&self, failure: &RunFailure) {
         let message = &failure.message;
-        if let Some(said) = &failure.output {
-            output::say(&format!("{said}\n"));
+        if let Some(text) = &failure.output {
+            output::say(&format!("{text}\n"));
         }
         match failure.class {
             FailureClass::Interrupted => output::say("interrupted\n"),
-            // Python has said more.
+            // Python's traceback says more.
             FailureClass::Crash if failure.output.is_some() => {}
             _ if message.contains('\n') => output::say(&format!("error: {message}\n")),
             _ => output::error(message, None),

@@ -106,13 +106,13 @@ impl Node {
 
     /// Resolves when the node has ended by itself, with the reason.
     pub(crate) async fn ended(&mut self) -> Failure {
-        let mut said = Vec::new();
+        let mut bytes = Vec::new();
         if let Some(stderr) = &mut self.child.stderr {
-            let _ = stderr.take(MAX_STDERR).read_to_end(&mut said).await;
+            let _ = stderr.take(MAX_STDERR).read_to_end(&mut bytes).await;
         }
-        let said = String::from_utf8_lossy(&said);
+        let text = String::from_utf8_lossy(&bytes);
         // A traceback ends with what went wrong.
-        let reason = said.lines().rfind(|line| !line.trim().is_empty()).unwrap_or("the node has ended");
+        let reason = text.lines().rfind(|line| !line.trim().is_empty()).unwrap_or("the node has ended");
         Failure::new(reason.strip_prefix("error: ").unwrap_or(reason))
     }
 

@@ -62,7 +62,7 @@ impl<'a> Listener<'a> {
         Self { simulator, driven, progress, reporter, failure: None }
     }
 
-    /// Reads a line of the script; what is no event is not for this program.
+    /// Reads a line of the script; lines that are not events are ignored.
     fn read(&mut self, line: &str) {
         let Some(event) = RunEvent::parse(line) else { return };
         match &event {
@@ -77,7 +77,7 @@ impl<'a> Listener<'a> {
             RunEvent::Note { text } => self.progress.note(text),
             RunEvent::Warning { text, help } => self.progress.warn(text, help.as_deref()),
             RunEvent::Failed(failure) => {
-                // It is reported at the end, with what else the script has said.
+                // It is reported at the end, with the script's other output.
                 self.failure = Some(failure.clone());
                 return;
             }
@@ -91,7 +91,7 @@ impl<'a> Listener<'a> {
 
 /// Returns the failure of a script that has ended, from its exit status, the failure that it reported, and other text
 /// on standard error; `None` if it succeeded.
-fn ending(status: ExitStatus, failure: Option<RunFailure>, said: String) -> Option<RunFailure> {
+fn ending(status: ExitStatus, failure: Option<RunFailure>, stderr: String) -> Option<RunFailure> {
     if status.success() {
         return None;
     }
@@ -100,7 +100,7 @@ fn ending(status: ExitStatus, failure: Option<RunFailure>, said: String) -> Opti
     }
     let failure = failure
         .unwrap_or_else(|| RunFailure::new(FailureClass::Crash, format!("the script ended with {status}")));
-    Some(RunFailure { output: Some(said).filter(|said| !said.is_empty()), ..failure })
+    Some(RunFailure { output: Some(stderr).filter(|text| !text.is_empty()), ..failure })
 }
 
 /// The user has ended the run.
@@ -149,7 +149,7 @@ pub(crate) async fn drive(
                 while let Ok(Some(line)) = timeout(STOP_LIMIT, next_line(&mut running.lines)).await {
                     listener.read(&line);
                 }
-                break ending(status, listener.failure.take(), running.said().await);
+                break ending(status, listener.failure.take(), running.stderr_text().await);
             }
             () = interrupts.next() => {
                 running.stop().await;
@@ -215,7 +215,7 @@ struct Running {
     stderr: JoinHandle<String>,
     /// The script's input, which stays empty; where there are no signals, its end interrupts the script.
     #[cfg_attr(unix, expect(dead_code, reason = "it is there to be closed with this process"))]
-    lifeline: Option<ChildStdin>,
+    parent_pipe: Option<ChildStdin>,
 }
 
 impl Running {
@@ -240,7 +240,7 @@ impl Running {
         #[cfg(windows)]
         command.creation_flags(NEW_PROCESS_GROUP);
         let mut child = command.spawn().map_err(|error| failure(&error.to_string()))?;
-        let (Some(stdout), Some(stderr), Some(lifeline)) =
+        let (Some(stdout), Some(stderr), Some(parent_pipe)) =
             (child.stdout.take(), child.stderr.take(), child.stdin.take())
         else {
             return Err(failure("its output cannot be read"));
@@ -258,12 +258,12 @@ impl Running {
             lines: BufReader::new(stdout).lines(),
             has_output: true,
             stderr,
-            lifeline: Some(lifeline),
+            parent_pipe: Some(parent_pipe),
         })
     }
 
     /// Returns its output on standard error, once it has ended.
-    async fn said(self) -> String {
+    async fn stderr_text(self) -> String {
         // A process that the script left behind could keep the pipe open.
         let stderr = timeout(STOP_LIMIT, self.stderr).await;
         stderr.ok().and_then(Result::ok).unwrap_or_default()
@@ -290,6 +290,6 @@ impl Running {
 
     #[cfg(not(unix))]
     fn interrupt(&mut self) {
-        self.lifeline = None;
+        self.parent_pipe = None;
     }
 }

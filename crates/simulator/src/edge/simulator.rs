@@ -181,8 +181,8 @@ impl Simulator {
     }
 
     /// Returns the number of connections refused because their client's id does not begin with [`Options::token`].
-    pub fn strangers(&self) -> usize {
-        self.session.with(|session| session.strangers())
+    pub fn refused_connections(&self) -> usize {
+        self.session.with(|session| session.refused_connections())
     }
 
     /// The poses of the robots in the scene's order.

@@ -91,7 +91,7 @@ pub(super) fn call(context: &mut CallContext, function: &str, arguments: &Argume
 }
 
 /// Handles a call on an object that a client has created, if it differs there.
-pub(super) fn call_of_made(
+pub(super) fn call_on_created(
     context: &mut CallContext,
     function: &str,
     arguments: &Arguments,

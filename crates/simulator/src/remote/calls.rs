@@ -55,7 +55,7 @@ pub(super) struct Detected {
 
 /// Handles a call by its name without `sim.`; `None` if there is no such function.
 pub(super) fn call(context: &mut CallContext, function: &str, arguments: &Arguments) -> Option<Outcome> {
-    if let Some(outcome) = building::call_of_made(context, function, arguments) {
+    if let Some(outcome) = building::call_on_created(context, function, arguments) {
         return Some(outcome);
     }
     Some(match function {

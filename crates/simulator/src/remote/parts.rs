@@ -1,4 +1,4 @@
-//! The objects that clients create: what each of them is made of.
+//! The descriptions of the objects that clients create.
 
 use std::collections::BTreeMap;
 use std::f64::consts::PI;

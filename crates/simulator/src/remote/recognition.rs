@@ -22,7 +22,7 @@ const MAX_OBSTACLES: usize = 4000;
 /// The height above the floor up to which objects are not obstacles, metres.
 pub(super) const FLOOR: f64 = 0.02;
 
-/// The scene of a program with what clients have created, and what the objects are in it.
+/// The scene of a program with the objects that clients have created, and their roles in it.
 pub(super) struct Recognized {
     pub(super) scene: Scene,
     pub(super) roles: Vec<(Handle, Kind)>,

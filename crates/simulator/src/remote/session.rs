@@ -60,8 +60,8 @@ pub struct Session {
     allowance: Option<u32>,
     /// The prefix that every client's id must have.
     token: Option<String>,
-    /// The connections of clients that were refused.
-    strangers: BTreeSet<u64>,
+    /// The connections whose clients were refused.
+    refused_connections: BTreeSet<u64>,
     server: Server,
     /// The text of the main script, if there is one.
     main_script: Option<String>,
@@ -129,7 +129,7 @@ impl Session {
             seen: Sightings::default(),
             allowance: None,
             token: None,
-            strangers: BTreeSet::new(),
+            refused_connections: BTreeSet::new(),
             server: Server::default(),
             main_script: Some(building::DEFAULT_MAIN_SCRIPT.to_owned()),
             physics_step: PHYSICS_STEP,
@@ -162,8 +162,8 @@ impl Session {
     }
 
     /// Returns the number of connections whose clients were refused.
-    pub fn strangers(&self) -> usize {
-        self.strangers.len()
+    pub fn refused_connections(&self) -> usize {
+        self.refused_connections.len()
     }
 
     /// From now on clients can only take steps that [`Session::allow`] permits.
@@ -327,7 +327,7 @@ impl Session {
 
     fn answer(&mut self, connection: u64, ticket: u64, now: Duration, request: &Request) -> Reply {
         if self.token.as_ref().is_some_and(|token| !request.uuid.starts_with(token)) {
-            self.strangers.insert(connection);
+            self.refused_connections.insert(connection);
             let refusal = "this simulator belongs to another run; start one of your own with `pydslrep sim`";
             return Reply::Now(Err(Failure(refusal.to_owned())));
         }
@@ -465,7 +465,7 @@ impl Session {
         self.state = State::Running;
     }
 
-    /// Simulates what clients have created since the latest start.
+    /// Simulates the objects that clients have created since the latest start.
     fn rebuild(&mut self) {
         let Some(scene) = self.objects.take_changes() else { return };
         // A world that cannot be simulated has no place here: its robots have wheels of a size.

@@ -1,4 +1,4 @@
-//! Obstacles that move: they push nothing and are stopped by nothing. What they run into is struck.
+//! Obstacles that move: they push nothing and are stopped by nothing. Robots that they run into are struck.
 
 use pydslrep_kinematics::Pose;
 use pydslrep_scene::{Body, Scene, Space, Trajectory};
@@ -93,8 +93,8 @@ impl Mover {
         let mut strikes = Vec::new();
         for (robot, bystander) in robots.iter().enumerate() {
             let Some(before) = self.contacts.get(robot).copied() else { continue };
-            let met = if before == Contact::Apart { self.meeting(bystander, from, to) } else { None };
-            strikes.extend(met.map(|time| Strike {
+            let struck = if before == Contact::Apart { self.meeting(bystander, from, to) } else { None };
+            strikes.extend(struck.map(|time| Strike {
                 time,
                 robot,
                 pose: bystander.pose,
@@ -103,7 +103,7 @@ impl Mover {
             }));
             let distance = self.distance(bystander, to, APART);
             self.contacts[robot] = match distance {
-                _ if before == Contact::Apart && met.is_none() => Contact::Apart,
+                _ if before == Contact::Apart && struck.is_none() => Contact::Apart,
                 Some(distance) if distance <= 0.0 => Contact::Covered,
                 Some(_) => Contact::Near,
                 None => Contact::Apart,

@@ -1,4 +1,4 @@
-//! `pydslrep scene remove`: takes away what `push` has made.
+//! `pydslrep scene remove`: removes the objects that `push` has made.
 
 use std::process::ExitCode;
 

@@ -119,7 +119,7 @@ impl Environment {
         }
     }
 
-    /// Removes what interrupted runs have left. Only the holder of the lock creates environments.
+    /// Removes the leftovers of interrupted runs. Only the holder of the lock creates environments.
     fn remove_leftovers(&self) {
         for entry in fs::read_dir(&self.cache).into_iter().flatten().flatten() {
             if entry.file_name().to_string_lossy().starts_with(UNFINISHED) {

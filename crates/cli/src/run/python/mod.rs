@@ -23,11 +23,11 @@ use crate::run::reporter::Reporter;
 pub(crate) enum Packages {
     /// The client library of `CoppeliaSim`.
     Client,
-    /// And what slam by odometry computes with.
+    /// The same and the packages for slam by odometry.
     ClientAndOdometry,
     /// `MuJoCo`, instead of the client.
     MuJoCo,
-    /// And what slam by odometry computes with.
+    /// The same and the packages for slam by odometry.
     MuJoCoAndOdometry,
 }
 
