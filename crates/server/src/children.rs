@@ -1,4 +1,4 @@
-//! Child processes of a session: their output, how they are stopped, and what is deleted with them.
+//! Child processes of a session: their output, their end, and the folders deleted with them.
 //!
 //! None outlives its session, however that ends; neither do the pictures they draw.
 
@@ -175,7 +175,7 @@ fn follow(
     let _ = sender.unbounded_send(ChildEvent::Ended(status.ok().and_then(|status| status.code())));
 }
 
-/// Passes on the lines of a stream; what comes before a failure is still worth showing.
+/// Passes on the lines of a stream; those before a failure are still worth showing.
 fn pass_on(
     stream: Option<impl Read>,
     sender: &UnboundedSender<ChildEvent>,

@@ -37,7 +37,7 @@ const NOT_INITIALIZED: ErrorCode = ErrorCode::ServerError(-32002);
 /// The protocol's code for answers about a text that has changed meanwhile.
 const CONTENT_MODIFIED: ErrorCode = ErrorCode::ServerError(-32801);
 
-/// Writes down what the server can do because of a row.
+/// Adds the capabilities that a row gives the server.
 pub(crate) type Announce = fn(&mut ServerCapabilities, &ClientFeatures);
 
 /// The result of handling a message: an answer, or nothing. It runs up to its first `.await` before the next message is
@@ -164,7 +164,7 @@ impl Table {
             let Some(key) = is_long(&state, &params) else {
                 return answer_now(&id, handler(&mut state, &params).into_result());
             };
-            let version = state.prepare_to_lend();
+            let version = state.prepare_to_borrow();
             drop(state);
             answer_later(server, &id, |token| {
                 let (id, server) = (id.clone(), server.clone());

@@ -1,4 +1,4 @@
-//! Documents as the client knows them: their addresses, and what the client has of each.
+//! Documents as the client knows them: their addresses, and the client's state of each.
 
 use std::str::FromStr;
 use std::sync::{Arc, OnceLock};
@@ -21,7 +21,7 @@ const HAS_DISK: bool = cfg!(feature = "process");
 const UNRESERVED: &AsciiSet =
     &NON_ALPHANUMERIC.remove(b'-').remove(b'.').remove(b'_').remove(b'~').remove(b'/');
 
-/// A document of the workspace, and what the client has of it.
+/// A document of the workspace, with the client's state of it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Document<'a> {
     /// Its key in the workspace.
@@ -38,7 +38,7 @@ pub(crate) struct Document<'a> {
 }
 
 impl<'a> Document<'a> {
-    /// A document of the workspace, with what the client has of it.
+    /// Returns a document of the workspace, with the client's state of it.
     pub(crate) fn new(
         document: &'a pydslrep_workspace::Document,
         client: Option<&'a ClientDocument>,
@@ -96,13 +96,13 @@ pub(crate) struct ClientDocument {
 }
 
 impl ClientDocument {
-    /// The same without what is remembered for later requests.
+    /// Returns a copy without the memory for later requests.
     pub(crate) fn without_memory(&self) -> Self {
         let Self { uri, version, opening, .. } = self;
         Self { uri: uri.clone(), version: *version, opening: *opening, ..Self::default() }
     }
 
-    /// Exchanges what is remembered for later requests.
+    /// Exchanges the memory for later requests.
     pub(crate) fn exchange_memory(&mut self, other: &mut Self) {
         std::mem::swap(&mut self.movements, &mut other.movements);
         std::mem::swap(&mut self.lenses, &mut other.lenses);

@@ -14,7 +14,7 @@ pub(crate) struct Load(Option<Arc<Shared>>);
 
 #[derive(Debug)]
 struct Shared {
-    /// So many bytes are enough; what is being answered then is added nevertheless.
+    /// The bytes from which on requests wait; answers in progress are added nevertheless.
     limit: usize,
     state: Mutex<State>,
     #[cfg(feature = "process")]
@@ -24,9 +24,9 @@ struct Shared {
 #[derive(Debug, Default)]
 struct State {
     waiting_bytes: usize,
-    /// The most there ever were.
-    most_bytes: usize,
-    /// Requests that go on when there is room.
+    /// The largest number of them so far.
+    peak_bytes: usize,
+    /// Requests that continue when there is room.
     wakers: Vec<Waker>,
     /// Nobody reads any more, or the session is about to end: nothing waits for room.
     is_over: bool,
@@ -42,7 +42,7 @@ impl Load {
     pub(crate) fn add(&self, bytes: usize) {
         if let Some((_, mut state)) = self.lock() {
             state.waiting_bytes += bytes;
-            state.most_bytes = state.most_bytes.max(state.waiting_bytes);
+            state.peak_bytes = state.peak_bytes.max(state.waiting_bytes);
         }
     }
 
@@ -108,10 +108,10 @@ impl Load {
         wakers.into_iter().for_each(Waker::wake);
     }
 
-    /// The most bytes that ever waited.
+    /// Returns the largest number of bytes that have waited.
     #[cfg(test)]
-    pub(crate) fn most_bytes(&self) -> usize {
-        self.lock().map_or(0, |(_, state)| state.most_bytes)
+    pub(crate) fn peak_bytes(&self) -> usize {
+        self.lock().map_or(0, |(_, state)| state.peak_bytes)
     }
 }
 

@@ -22,7 +22,7 @@ use crate::message::Outbox;
 use crate::session::{Ending, Session};
 
 /// So many bytes may wait to be written before no more requests are answered: more than any usual answer.
-const MOST_UNWRITTEN: usize = 16 << 20;
+const MAX_UNWRITTEN: usize = 16 << 20;
 
 /// The time for writing the last messages once the session has ended.
 const LAST_WORDS: Duration = Duration::from_secs(1);
@@ -59,7 +59,7 @@ fn serve_with(
     output: impl Write + Send + 'static,
     start: impl FnOnce(Outbox, runtime::Handle) -> Session,
 ) -> io::Result<Ending> {
-    serve_with_load(input, output, &Load::new(MOST_UNWRITTEN), start)
+    serve_with_load(input, output, &Load::new(MAX_UNWRITTEN), start)
 }
 
 /// [`serve_with`] with the most that may wait to be written.

@@ -55,7 +55,7 @@ impl fmt::Debug for Session {
 }
 
 impl Session {
-    /// A session whose messages to the client go to `outbox`. `spawn` runs what outlasts the message that began it.
+    /// A session whose messages to the client go to `outbox`. `spawn` runs tasks that outlast the message that began them.
     pub fn new(outbox: Outbox, spawn: impl Fn(BoxFuture<'static, ()>) + 'static) -> Self {
         Self::with_table(handlers::table(), outbox, Box::new(spawn))
     }
@@ -92,7 +92,7 @@ impl Session {
         Self { service, server, responses, spawn, outbox }
     }
 
-    /// Takes what the program says that starts it.
+    /// Applies the parameters of the program that starts it.
     #[cfg(feature = "process")]
     pub(crate) fn launch(&self, launch: crate::launch::Launch) {
         self.server.children().command = launch.command;

@@ -32,7 +32,7 @@ use crate::shared::SharedWorkspace;
 use crate::typing::{Typing, replacements};
 use crate::work::{FileWork, SHORT, Work};
 
-/// Documents, their analysis, and what the client can do.
+/// Documents, their analysis, and the features of the client.
 #[derive(Debug)]
 pub(crate) struct State {
     /// The features of the client.
@@ -63,7 +63,7 @@ pub(crate) struct State {
     pub(crate) waiting: Vec<oneshot::Sender<()>>,
     /// Messages shown so far about scripts that are generated on save.
     pub(crate) reported: FxHashSet<String>,
-    /// Writes what scripts import.
+    /// Writes the package that scripts import.
     pub(crate) runtimes: Runtimes,
     /// Planned paths that the client has.
     pub(crate) watched: Vec<Watched>,
@@ -213,44 +213,44 @@ impl State {
         std::mem::take(&mut self.changes)
     }
 
-    /// Has the workspace say what has changed, which stops those who read it: it is asked before they begin.
+    /// Takes the changes of the workspace. That stops its readers, so it happens before they begin.
     fn note_changes(&mut self) {
         if self.workspace.has_changes() {
-            let Changes { all, documents } = self.workspace.note().take_changes();
+            let Changes { all, documents } = self.workspace.untracked_mut().take_changes();
             self.changes.all |= all;
             self.changes.documents.extend(documents);
         }
     }
 
-    /// Prepares for [`Self::lend`] after this message.
-    pub(crate) fn prepare_to_lend(&mut self) -> u64 {
+    /// Prepares for [`Self::borrow`] after this message.
+    pub(crate) fn prepare_to_borrow(&mut self) -> u64 {
         self.note_changes();
         self.workspace.version()
     }
 
-    /// The state as it is now for a request about a document that goes on beside the message loop, and the token that
-    /// is cancelled when the workspace changes. It has what is kept for such requests, which [`Self::take_back`] returns.
-    pub(crate) fn lend(&mut self, key: &str) -> (Self, CancellationToken) {
-        let (workspace, token) = self.workspace.lend();
+    /// Returns the current state for a request about a document that continues beside the message loop, and the token that
+    /// is cancelled when the workspace changes. Memory of earlier requests moves to it until [`Self::release`].
+    pub(crate) fn borrow(&mut self, key: &str) -> (Self, CancellationToken) {
+        let (workspace, token) = self.workspace.borrow();
         let mut clients: FxHashMap<String, ClientDocument> =
             self.clients.iter().map(|(key, client)| (key.clone(), client.without_memory())).collect();
-        if let (Some(own), Some(lent)) = (self.clients.get_mut(key), clients.get_mut(key)) {
-            lent.exchange_memory(own);
+        if let (Some(own), Some(borrowed)) = (self.clients.get_mut(key), clients.get_mut(key)) {
+            borrowed.exchange_memory(own);
         }
         let (client, provided) = (self.client.clone(), self.provided.clone());
         let typing = self.typing.clone();
-        let lent = Self { client, workspace, provided, clients, typing, ..Self::default() };
-        (lent, token)
+        let borrowed = Self { client, workspace, provided, clients, typing, ..Self::default() };
+        (borrowed, token)
     }
 
-    /// Takes back what a request was lent, with what it has noted.
-    pub(crate) fn take_back(&mut self, key: &str, mut lent: Self) {
-        if let (Some(own), Some(lent)) = (self.clients.get_mut(key), lent.clients.get_mut(key))
-            && own.opening == lent.opening
+    /// Ends the loan to a request, and keeps what it has remembered.
+    pub(crate) fn release(&mut self, key: &str, mut borrowed: Self) {
+        if let (Some(own), Some(borrowed)) = (self.clients.get_mut(key), borrowed.clients.get_mut(key))
+            && own.opening == borrowed.opening
         {
-            own.exchange_memory(lent);
+            own.exchange_memory(borrowed);
         }
-        for watched in lent.watched.drain(..) {
+        for watched in borrowed.watched.drain(..) {
             self.watched.retain(|other| !other.is(&watched.which, watched.audience));
             self.watched.push(watched);
         }
@@ -282,7 +282,7 @@ impl State {
         self.cursor_is_at(&at.text_document.uri, Range::new(at.position, at.position));
     }
 
-    /// Notes what a request says about the cursor: who has gone on to another line has done with the one before.
+    /// Notes the cursor of a request: a user who has moved to another line has finished the one before.
     pub(crate) fn cursor_is_at(&mut self, uri: &Uri, range: Range) {
         let key = key(uri);
         let (Some(typing), Some(document)) = (&self.typing, self.workspace.document(&key)) else { return };
@@ -306,7 +306,7 @@ impl State {
         self.typing.as_mut().is_some_and(|typing| typing.complete(&key, offset))
     }
 
-    /// Has the client ask again for what is no longer so.
+    /// Asks the client to request outdated hints and lenses again.
     pub(crate) fn tell_outdated(&mut self, outbox: &Outbox) {
         let Outdated { hints, lenses } = std::mem::take(&mut self.outdated);
         if hints && self.client.refreshes_inlay_hints {
@@ -361,14 +361,14 @@ impl State {
         true
     }
 
-    /// Applies the client's settings; returns what is wrong with them.
+    /// Applies the client's settings; returns their problems.
     pub(crate) fn set_client_settings(&mut self, value: &Value) -> Vec<Problem> {
         let (config, problems) = Config::from_json(value);
         self.workspace.set_overrides(self.options.clone().merged_over(config));
         problems
     }
 
-    /// Sets what wins over the client's settings, before there are any.
+    /// Sets the options that override the client's settings, before there are any.
     #[cfg(feature = "process")]
     pub(crate) fn set_options(&mut self, options: Config) {
         self.workspace.set_overrides(options.clone());

@@ -11,7 +11,7 @@ use ropey::Rope;
 use tower_lsp::ls_types::{Range, TextDocumentContentChangeEvent};
 
 /// Nobody types with more cursors than this.
-const MOST_CURSORS: usize = 32;
+const MAX_CURSORS: usize = 32;
 
 /// Where the last change was made.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -95,7 +95,7 @@ impl Typing {
         if changes.is_empty() {
             return before;
         }
-        let is_typed = changes.len() == 1 || are_alike && changes.len() <= MOST_CURSORS;
+        let is_typed = changes.len() == 1 || are_alike && changes.len() <= MAX_CURSORS;
         let stays = before.filter(|before| before.key == key && !is_typed);
         if !is_typed && stays.is_none() {
             return None;

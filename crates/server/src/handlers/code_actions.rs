@@ -41,7 +41,7 @@ const SCRIPT_HERE_KIND: CodeActionKind = CodeActionKind::new("script");
 /// Its command, where the client cannot create files.
 pub(crate) const GENERATE_SCRIPT: &str = "pydslrep.generateScript";
 
-/// The command that writes what a script imports, where the client has created the script.
+/// The command that writes the package that a script imports, where the client has created the script.
 pub(crate) const WRITE_RUNTIME: &str = "pydslrep.writeRuntime";
 
 pub(crate) fn announce(server: &mut ServerCapabilities, client: &ClientFeatures) {
@@ -182,7 +182,7 @@ fn key_fixes(
     found.into_iter().map(|fix| action(fix).into()).collect()
 }
 
-/// Creates the scenes of what is at the cursor, or adds what is missing in them.
+/// Creates the scenes of the declaration at the cursor, or adds what they lack.
 fn scene_actions(
     state: &State,
     document: Document<'_>,

@@ -96,7 +96,7 @@ fn of_environment(uri: &Uri, name: &str, range: Range, wanted: &Wanted) -> Vec<C
         .collect()
 }
 
-/// The references to what a file declares, in programs and in scenes.
+/// The references to the declarations of a file, in programs and in scenes.
 fn locations(state: &State, file: FileId, kind: EntityKind, name: &str) -> Vec<Location> {
     let (database, name) = (state.database(), name.into());
     let in_programs = database.references(file, kind, &name).into_iter();

@@ -17,7 +17,7 @@ use crate::state::State;
 
 /// The maximum number of items with documentation if the client does not resolve it: finding a declaration takes a while in a
 /// long file, and nobody reads them all.
-const MOST_DOCUMENTED: usize = 50;
+const MAX_DOCUMENTED: usize = 50;
 
 /// The entity of a completion: its data until it is resolved.
 #[derive(Debug, Serialize, Deserialize)]
@@ -127,7 +127,7 @@ fn convert(state: &State, document: Document<'_>, completion: ide::Completion, a
             let of = CompletionOf { home, kind: kind.noun().to_owned(), name: item.label.clone() };
             item.data = serde_json::to_value(of).ok();
         }
-        ide::Documentation::Of(home, kind) if at < MOST_DOCUMENTED => {
+        ide::Documentation::Of(home, kind) if at < MAX_DOCUMENTED => {
             let name = item.label.as_str().into();
             let text = ide::completion_documentation(state.database(), home, kind, &name);
             item.documentation = text.and_then(|text| documentation(state, text));

@@ -12,7 +12,7 @@ use crate::state::State;
 /// Returns the kinematics of a robot as Markdown; its argument is a [`RobotOf`].
 pub(crate) const SHOW_KINEMATICS: &str = "pydslrep.showKinematics";
 
-/// Which robot is meant.
+/// A robot of a program.
 #[derive(Debug, Deserialize)]
 pub(crate) struct RobotOf {
     /// The program.
@@ -21,7 +21,7 @@ pub(crate) struct RobotOf {
     robot: String,
 }
 
-/// The command [`SHOW_KINEMATICS`]: what a hover over the robot shows.
+/// The command [`SHOW_KINEMATICS`]: shows the text of a hover over the robot.
 pub(crate) fn show_kinematics(state: &State, RobotOf { uri, robot }: &RobotOf) -> Result<Option<LSPAny>> {
     let (_, file) = state
         .analysed(uri)

@@ -12,7 +12,7 @@ use crate::chosen::ChosenEnvironment;
 use crate::handlers::scripts::environment;
 use crate::state::State;
 
-/// The request for what a position has to do with planned paths.
+/// The request for the environments and the action at a position.
 pub(crate) enum PlannedAt {}
 
 impl Request for PlannedAt {
@@ -30,7 +30,7 @@ impl Request for ActionLocation {
     const METHOD: &'static str = "pydslrep/actionLocation";
 }
 
-/// Which action is meant.
+/// An action of an environment.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct ActionOf {
     #[serde(flatten)]

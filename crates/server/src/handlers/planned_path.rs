@@ -19,7 +19,7 @@ use crate::state::State;
 
 /// Longer paths are not planned again to see whether a change has changed them: planning takes longer than asking the
 /// client to request them again.
-const MOST_LEGS: usize = 1_000;
+const MAX_LEGS: usize = 1_000;
 
 /// The request.
 pub(crate) enum PlannedPath {}
@@ -48,7 +48,7 @@ pub(crate) fn planned_path(
     state.watched.retain(|watched| !watched.is(which, audience));
     let fingerprint = fingerprint(state, which);
     let sent = match &path {
-        Ok(path) if path.robots.iter().any(|robot| robot.legs.len() > MOST_LEGS) => Sent::Long,
+        Ok(path) if path.robots.iter().any(|robot| robot.legs.len() > MAX_LEGS) => Sent::Long,
         Ok(path) => Sent::Path(path.clone()),
         Err(error) => Sent::Failure(error.clone()),
     };

@@ -213,16 +213,16 @@ pub(crate) fn map(picture: &Path) -> PathBuf {
 }
 
 /// The error for a child that failed or was interrupted.
-pub(crate) fn ended_badly(code: Option<i32>, said: &[String]) -> Error {
+pub(crate) fn ended_badly(code: Option<i32>, stderr: &[String]) -> Error {
     if code == Some(INTERRUPTED) {
         return cancelled("the run was cancelled");
     }
     // Warnings about the program come before the error that ended it, and an editor shows those anyway.
-    let first = said.iter().position(|line| line.starts_with(ERROR)).unwrap_or(0);
-    if said.is_empty() {
+    let first = stderr.iter().position(|line| line.starts_with(ERROR)).unwrap_or(0);
+    if stderr.is_empty() {
         return failure("pydslrep exited without output".to_owned());
     }
-    failure(said[first..].join("\n"))
+    failure(stderr[first..].join("\n"))
 }
 
 /// The error for a request that the user does not want any more.

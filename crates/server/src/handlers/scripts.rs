@@ -129,7 +129,7 @@ pub(crate) fn generate(state: &State, which: &ChosenEnvironment) -> jsonrpc::Res
     of_environment(state, program.as_ref().unwrap_or(&which.uri), id)
 }
 
-/// The environment that is meant.
+/// The chosen environment.
 ///
 /// # Errors
 ///
@@ -315,7 +315,7 @@ pub(crate) fn save(state: &mut State, program: &Uri, outbox: &Outbox) {
     }
 }
 
-/// Why a script is not written, and what to do about it.
+/// Why a script is not written, with advice.
 pub(crate) fn reason(error: &WriteError) -> String {
     match (error, error.help()) {
         (WriteError::Foreign(..), _) => format!("{error}; move it, or rename the environment"),

@@ -1,4 +1,4 @@
-//! `textDocument/semanticTokens`: highlighting by what names mean.
+//! `textDocument/semanticTokens`: highlighting by the meaning of names.
 
 use std::sync::Arc;
 
@@ -56,7 +56,7 @@ pub(crate) fn delta(
     })
 }
 
-/// Keeps what the client is about to get, if it supports deltas.
+/// Keeps the tokens that the client is about to get, if it supports deltas.
 fn remember(state: &mut State, uri: &Uri) -> (Option<String>, TokenCounts) {
     let counts = TokenCounts::default();
     if !state.client.token_deltas {
