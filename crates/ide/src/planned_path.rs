@@ -193,13 +193,13 @@ pub struct PlannedCollision {
     /// Its heading then.
     pub theta: f64,
     /// The other side of the collision.
-    pub with: Met,
+    pub with: CollisionTarget,
 }
 
 /// The thing that a robot collides with, by name.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Met {
+pub enum CollisionTarget {
     /// Something on the floor.
     Obstacle(String),
     /// Another robot.
@@ -292,13 +292,17 @@ fn obstacle_path(trajectory: &scenery::Trajectory) -> ObstaclePath {
 }
 
 fn collisions(environment: &Environment, scene: &Scene, plan: &Plan) -> Vec<PlannedCollision> {
-    let met = |thing| match thing {
-        Thing::Obstacle(index) => scene.obstacles.get(index).map(|thing| Met::Obstacle(thing.name.clone())),
-        Thing::Robot(index) => scene.robots.get(index).map(|robot| Met::Robot(robot.name.clone())),
+    let target = |thing| match thing {
+        Thing::Obstacle(index) => {
+            scene.obstacles.get(index).map(|thing| CollisionTarget::Obstacle(thing.name.clone()))
+        }
+        Thing::Robot(index) => {
+            scene.robots.get(index).map(|robot| CollisionTarget::Robot(robot.name.clone()))
+        }
     };
     let named = |found: Collision| {
         let robot = scene.robots.get(found.robot)?.name.clone();
-        let (action, with) = (action(environment, found.action, &found.place), met(found.with)?);
+        let (action, with) = (action(environment, found.action, &found.place), target(found.with)?);
         let Pose { x, y, theta } = found.pose;
         Some(PlannedCollision { robot, action, t: found.time, x, y, theta, with })
     };
@@ -447,7 +451,10 @@ mod tests {
         let pole = Obstacle { name: "pole".to_owned(), outline, path: None };
         assert_eq!(path.obstacles, [pole]);
         let [collision] = &path.collisions[..] else { panic!("{:?}", path.collisions) };
-        assert_eq!((collision.robot.as_str(), &collision.with), ("rover", &Met::Obstacle("pole".to_owned())));
+        assert_eq!(
+            (collision.robot.as_str(), &collision.with),
+            ("rover", &CollisionTarget::Obstacle("pole".to_owned()))
+        );
         assert_eq!(collision.action.as_ref().unwrap().text, "move 3 meters");
         let front = collision.y + path.robots[0].body.length / 2.0;
         assert!((front - 0.9).abs() < 0.002, "{collision:?}");

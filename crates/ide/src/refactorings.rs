@@ -81,7 +81,7 @@ pub fn refactorings(database: &Database, file: FileId, range: Span) -> Vec<Refac
     found
 }
 
-/// Those that write what the article does not have.
+/// Refactorings that write forms which the article does not have.
 fn extending(selection: &Selection<'_>) -> impl Iterator<Item = Refactoring> {
     let offers = [
         extract::extract(selection),

@@ -229,7 +229,7 @@ fn current(parts: &[Part], typed: &[Token], expected: &[Expected]) -> Option<usi
             }
             TokenKind::Name | TokenKind::Comma => {}
             _ => match token.spelling().map(|word| rest.iter().position(|part| part.is_word(word))) {
-                // An action has no keyword of another form, nor leaves out one that must be there.
+                // An action has no keyword of another form, and leaves out none that is required.
                 Some(None) if is_action => return None,
                 Some(Some(place)) if is_action && rest[..place].iter().any(Part::must_be_written) => {
                     return None;

@@ -37,7 +37,7 @@ impl Statements {
         self.blocks.last().map_or(&[], Vec::as_slice)
     }
 
-    /// The latest statement of each open block, the innermost first: all but the first go on around it.
+    /// The latest statement of each open block, the innermost first: all but the first continue after it.
     pub(crate) fn inside_out(&self) -> impl Iterator<Item = &[Token]> {
         self.blocks.iter().rev().map(Vec::as_slice).filter(|statement| !statement.is_empty())
     }

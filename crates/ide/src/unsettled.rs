@@ -27,7 +27,7 @@ pub struct TypedStatement<'a> {
     /// The text after the cursor that is parsed as part of the statement, because that is not complete. Only some
     /// problems ask for it, and it costs as much as reading the entity again.
     taken: OnceCell<Option<Span>>,
-    /// The same if the word at the cursor is not the one that is meant.
+    /// The same without the word at the cursor, which may not be the intended one.
     taken_without_word: OnceCell<Option<Span>>,
 }
 

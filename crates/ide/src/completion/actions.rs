@@ -264,7 +264,7 @@ mod tests {
         "#]].assert_eq(&shown);
     }
 
-    /// Those that are no actions of their own.
+    /// Clauses are not actions of their own.
     #[test]
     fn clauses_come_before_the_next_action() {
         let first =

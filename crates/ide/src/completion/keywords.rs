@@ -35,7 +35,7 @@ pub(super) fn keyword(context: &CursorContext<'_>, word: TokenKind) -> Option<Co
     let page = keyword_page(if leads { last } else { word });
     let rank = match word {
         TokenKind::CloseBrace => Rank::Closing,
-        // A condition is more likely to go on.
+        // A condition is more likely to continue.
         TokenKind::OpenBrace if context.movement().is_some() => Rank::Closing,
         _ if matches_wheels(context, word) => Rank::Fitting,
         _ => Rank::Keyword,

@@ -57,7 +57,7 @@ pub(super) struct Planner<'p> {
 }
 
 impl Planner<'_> {
-    /// The plan of some steps, what is to be known of them next time, and where they end.
+    /// Returns the plan of some steps, their known steps for the next time, and their end.
     pub(super) fn plan<'a>(
         &mut self,
         steps: Vec<Step<'a>>,

@@ -23,8 +23,8 @@ pub(super) struct Step<'a> {
 pub(super) enum StepKind {
     /// A valid action.
     Action(ActionKind),
-    /// A valid action that does other movements. They have numbers that change with what else is done, so it is known again
-    /// by its text.
+    /// A valid action that does other movements. The numbers of those change with other edits, so it is recognised by its
+    /// text.
     Calling(ActionKind, String),
     /// Invalid code, also in the blocks of an action.
     Broken,

@@ -12,7 +12,7 @@ use super::rows::Row;
 use super::{Refactoring, Selection};
 
 /// The longest group that is looked for, in actions.
-const LONGEST_GROUP: usize = 100;
+const MAX_GROUP: usize = 100;
 
 /// The refactoring for the longest run of equal groups among the selected actions, or around the cursor: in the innermost
 /// block that has one.
@@ -69,7 +69,7 @@ impl<'a> Search<'a> {
     /// The longest run, of those with the smallest groups the first; with an action, only runs that include it.
     fn longest(&self, around: Option<usize>) -> Option<Run> {
         let mut longest: Option<Run> = None;
-        for period in 1..=LONGEST_GROUP.min(self.part.len() / 2) {
+        for period in 1..=MAX_GROUP.min(self.part.len() / 2) {
             for equal in self.stretches(period, around) {
                 let Some(run) = as_run(&equal, period, around) else { continue };
                 if longest.as_ref().is_none_or(|longest| run.len() > longest.len()) {

@@ -1,4 +1,4 @@
-//! Hover in a TOML file: what the key or the table under the cursor means.
+//! Hover in a TOML file: the meaning of the key or the table under the cursor.
 
 use pydslrep_schema::{Item, name_parts};
 

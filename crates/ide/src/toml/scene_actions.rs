@@ -69,8 +69,8 @@ fn users(database: &Database, id: EntityId) -> Vec<EntityId> {
     };
     let user_kind = if kind == EntityKind::Robot { EntityKind::Environment } else { EntityKind::Robot };
     let files = std::iter::once(home).chain(database.importing(home));
-    let meant = files.filter(|file| database.resolve(*file, kind, name).entity() == Some(id));
-    let users = meant.flat_map(|file| database.users(file, kind, name).iter().copied());
+    let resolving = files.filter(|file| database.resolve(*file, kind, name).entity() == Some(id));
+    let users = resolving.flat_map(|file| database.users(file, kind, name).iter().copied());
     users.filter(|id| database.tree(*id).and_then(Entity::kind) == Some(user_kind)).collect()
 }
 

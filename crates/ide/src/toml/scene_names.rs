@@ -72,9 +72,9 @@ pub fn name_in_scene(
 pub fn highlights_in_scene(database: &Database, environment: EntityId, text: &str, offset: u32) -> Vec<Span> {
     let names = written_names(text);
     let Some(at) = names.iter().find(|written| written.span.touches(offset)) else { return Vec::new() };
-    let meant = target(database, environment, at);
+    let intended = target(database, environment, at);
     let is_same = |other: &&Written| {
-        (other.kind, &other.name) == (at.kind, &at.name) && target(database, environment, other) == meant
+        (other.kind, &other.name) == (at.kind, &at.name) && target(database, environment, other) == intended
     };
     names.iter().filter(is_same).map(|written| written.span).collect()
 }
@@ -161,8 +161,9 @@ fn mentions(database: &Database, referent: &Referent) -> Vec<ScenePlace> {
             continue;
         }
         let Some(id) = environment_called(database, program, environment) else { continue };
-        let meant = written_names(text).into_iter().filter(|written| means(database, id, written, referent));
-        places.extend(meant.map(|written| place(written.span)));
+        let mentions =
+            written_names(text).into_iter().filter(|written| means(database, id, written, referent));
+        places.extend(mentions.map(|written| place(written.span)));
     }
     places
 }

@@ -8,7 +8,7 @@ use pydslrep_analysis::environment::{Action, ActionKind, Condition, Environment}
 use pydslrep_analysis::{Database, FileId, plan, scene};
 
 /// More statements are not compared.
-const MOST_STATEMENTS: usize = 50_000;
+const MAX_STATEMENTS: usize = 50_000;
 
 /// The behaviour of the robots of an environment.
 #[derive(Debug)]
@@ -78,7 +78,7 @@ fn statements(environment: &Environment) -> Option<Vec<String>> {
 /// Adds what is done; `None` if it is too much.
 fn unroll(environment: &Environment, actions: &[Action], all: &mut Vec<String>) -> Option<()> {
     for action in actions {
-        if all.len() > MOST_STATEMENTS {
+        if all.len() > MAX_STATEMENTS {
             return None;
         }
         match &action.kind {
