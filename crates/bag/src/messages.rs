@@ -80,7 +80,7 @@ pub(crate) const RANGE: MessageType = MessageType {
 /// Where a robot is, as localisation says it. Bags of this program have none.
 pub(crate) const LOCALISED_POSE: &str = "geometry_msgs/msg/PoseWithCovarianceStamped";
 
-/// A time, or the zero of those that nobody has set.
+/// A time; zero if it was not set.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Stamp {
     sec: i32,
@@ -95,7 +95,7 @@ impl Stamp {
         Self { sec, nanosec: u32::try_from(nanoseconds % second).unwrap_or_default() }
     }
 
-    /// Seconds; `None` if nobody has set it.
+    /// Seconds; `None` if it was not set.
     pub(crate) fn seconds(self) -> Option<f64> {
         (self != Self::default()).then(|| f64::from(self.sec) + f64::from(self.nanosec) * 1e-9)
     }

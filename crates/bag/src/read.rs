@@ -123,7 +123,7 @@ impl Recording {
 /// Reads a bag of at most `size` bytes.
 ///
 /// # Errors
-/// If it cannot be read, or is none. What is in front of a sudden end is read.
+/// If it cannot be read, or is not a bag. Of a truncated bag, everything before the end is read.
 pub fn read(mut input: impl Read, size: u64) -> Result<Recording, BagError> {
     // No record can be longer than its file, and nothing may ask for more memory than that.
     let limit = usize::try_from(size).unwrap_or(usize::MAX);

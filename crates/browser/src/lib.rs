@@ -52,8 +52,8 @@ impl LanguageServer {
         self.0.handle(message);
     }
 
-    /// To be called when no message waits: goes on with long requests, a part of each, and reports what messages have
-    /// changed. Returns whether there is more to do; messages may come first.
+    /// Continues long requests, a part of each, and reports the changes of earlier messages. Call it when no message
+    /// waits. Returns whether there is more to do; messages may come first.
     pub fn proceed(&mut self) -> bool {
         self.0.proceed()
     }

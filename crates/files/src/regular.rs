@@ -1,5 +1,5 @@
-//! Regular files, the only ones that are opened: a pipe or a device could make its reader wait forever, or take the input
-//! that somebody else waits for.
+//! Regular files, the only ones that are opened: a pipe or a device could make its reader wait forever, or take input
+//! from another reader.
 
 use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{self, Read};

@@ -54,12 +54,12 @@ fn ask(mut python: Command) -> Option<bool> {
 
 fn answer(child: &mut Child) -> Option<String> {
     let mut stdout = child.stdout.take()?.take(MAX_ANSWER);
-    let (tell, told) = channel();
+    let (sender, receiver) = channel();
     thread::spawn(move || {
         let mut bytes = Vec::new();
         // Text read before an error is not an answer, and neither is an empty one.
         let _ = stdout.read_to_end(&mut bytes);
-        let _ = tell.send(String::from_utf8_lossy(&bytes).into_owned());
+        let _ = sender.send(String::from_utf8_lossy(&bytes).into_owned());
     });
-    told.recv_timeout(LIMIT).ok()
+    receiver.recv_timeout(LIMIT).ok()
 }

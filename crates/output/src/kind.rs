@@ -7,10 +7,10 @@ use pydslrep_script::{Origin, origin};
 use pydslrep_workspace::ReadError;
 use serde_json::Value;
 
-/// More than any script or map, bytes.
+/// The maximum size of a script or a map, bytes.
 const MAX_BYTES: u64 = 64 << 20;
 
-/// More than a line of a trace, and than what is before the mark of a picture, bytes.
+/// The bytes read from the start: more than a line of a trace, and more than a picture has before its mark.
 const START: u64 = 64 << 10;
 
 /// The mark of pictures (`picture/src/lib.rs`).
@@ -20,7 +20,7 @@ const PICTURE_MARK: &str = "Drawn by PyDSLRep";
 const BAG_MAGIC: &[u8] = b"\x89MCAP0\r\n";
 const BAG_LIBRARY: &[u8] = b"PyDSLRep";
 
-/// Where the library of a bag is at the latest: a record's head, a profile and the lengths of both are in front of it.
+/// The bytes of a bag up to its library, at most: a record's head, a profile and the lengths of both come before.
 const BAG_HEAD: usize = 128;
 
 /// The first bytes of worlds (`scene/src/mjcf/mod.rs`).

@@ -15,13 +15,13 @@ use crate::whole::{folder_of, try_folder};
 /// The state of an output's location.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Found {
-    /// Nothing, or what this program made.
+    /// Nothing, or a file that this program made.
     Free,
     /// A script that its user changed.
     Changed,
 }
 
-/// Where an output goes, which is not its path if that is a link, and what is there.
+/// Returns the location of an output, which is not its path if that is a link, and the state of it.
 ///
 /// # Errors
 /// If a file is there that this program did not make, or the path is a link out of its folder.

@@ -16,7 +16,7 @@ use crate::whole::NewFolder;
 /// A larger file is not one of the package, and not kept with it, bytes.
 const MAX_BYTES: u64 = 64 << 20;
 
-/// More files than this are no package of ours.
+/// A folder with more files is not our package.
 const MAX_FILES: usize = 10_000;
 
 /// More processes than this rarely write the same package at the same moment.
@@ -230,7 +230,7 @@ fn list(path: &Path, inside: &str, files: &mut Vec<Entry>) -> io::Result<()> {
 enum Place<'a> {
     /// There is nothing.
     Empty,
-    /// There is a copy to replace, with files of somebody's own to keep.
+    /// There is a copy to replace, with files that a user added and that are kept.
     Taken { added: &'a [String] },
 }
 
@@ -252,7 +252,7 @@ fn put(path: &Path, current: &Record, place: &Place<'_>) -> io::Result<()> {
     }
 }
 
-/// Tries again what failed because somebody else wrote the same package: each time, another one has got further.
+/// Repeats an attempt that failed because another process wrote the same package: each time, one of them completes.
 fn beside_others<T>(mut attempt: impl FnMut() -> io::Result<T>) -> io::Result<T> {
     use io::ErrorKind::{AlreadyExists, DirectoryNotEmpty, NotFound};
     for _ in 1..MAX_ATTEMPTS {

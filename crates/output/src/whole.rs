@@ -58,7 +58,7 @@ pub(crate) fn try_folder(path: &Path) -> io::Result<()> {
     temporary_file(folder_of(path)).map(drop)
 }
 
-/// Removes what killed processes left in a folder; looks once at each.
+/// Removes the leftovers of killed processes in a folder; looks at each folder once.
 fn remove_leftovers(folder: &Path) {
     static SEEN: LazyLock<Mutex<HashSet<PathBuf>>> = LazyLock::new(Mutex::default);
     let is_new = SEEN.lock().unwrap_or_else(PoisonError::into_inner).insert(folder.to_owned());

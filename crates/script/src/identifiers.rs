@@ -33,7 +33,7 @@ const PYTHON: &str = include_str!("python_names.txt");
 const AMBIGUOUS: [&str; 3] = ["I", "O", "l"];
 
 /// Longer names would exceed the line length.
-const LONGEST: usize = 40;
+const MAX_LENGTH: usize = 40;
 
 /// The identifiers of a script, all different.
 #[derive(Debug)]
@@ -75,7 +75,7 @@ fn choose(name: &str, kind: &str, number: usize, taken: &HashSet<String>) -> Str
 
 /// Returns whether a name is a short identifier whose form means nothing special to Python.
 fn is_plain(name: &str) -> bool {
-    name.len() <= LONGEST
+    name.len() <= MAX_LENGTH
         && name.starts_with(|c: char| c.is_ascii_alphabetic())
         && name.chars().all(|c| c == '_' || c.is_ascii_alphanumeric())
 }

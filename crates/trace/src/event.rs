@@ -36,7 +36,7 @@ pub enum RunEvent {
         /// The note.
         text: String,
     },
-    /// Something is wrong, but the run goes on.
+    /// Something is wrong, but the run continues.
     Warning {
         /// The warning.
         text: String,

@@ -45,7 +45,7 @@ impl Workspace {
     }
 
     /// The folder for the scripts of a program: relative to the settings file that names it or, if the caller names
-    /// it, to the folder of the workspace. `None` if nobody does.
+    /// it, to the folder of the workspace. `None` if neither does.
     pub fn output_folder(&self, program: &str) -> Option<String> {
         let own = folder(program)?;
         let output = self.documents.get(program)?.settings.output.as_deref()?;
