@@ -41,7 +41,7 @@ const REQUEST_TIMEOUT: Duration = Duration::from_secs(3);
 
 /// The maximum number of open connections; a browser opens six for one page. Others wait until the slow ones are dropped, and
 /// are refused if none is.
-const MAX_CONNECTIONS: usize = 128;
+const MOST_CONNECTIONS: usize = 128;
 
 /// The maximum number of connections that wait for that. Still others are closed.
 const MAX_WAITING: usize = 128;
@@ -184,7 +184,7 @@ struct Door {
 /// Accepts connections until it fails.
 async fn accept(listener: TcpListener, door: Arc<Door>) -> io::Result<()> {
     let listener = tokio::net::TcpListener::from_std(listener)?;
-    let (room, queue) = (Arc::new(Semaphore::new(MAX_CONNECTIONS)), Arc::new(Semaphore::new(MAX_WAITING)));
+    let (room, queue) = (Arc::new(Semaphore::new(MOST_CONNECTIONS)), Arc::new(Semaphore::new(MAX_WAITING)));
     loop {
         match listener.accept().await {
             Ok((stream, _)) => {
