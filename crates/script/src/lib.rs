@@ -39,7 +39,7 @@ pub const OLDEST_PYTHON: (u32, u32) = (3, 11);
 /// V-REP's client for Python: a script for V-REP needs one of these modules beside it or on Python's path.
 pub const VREP_CLIENTS: [&str; 2] = ["sim.py", "vrep.py"];
 
-/// The files that a client needs beside it: those of the same generation, and one library.
+/// The files that a client needs beside it: its own constants, and one of the libraries.
 pub const VREP_CLIENT_PARTS: [&str; 5] =
     ["simConst.py", "vrepConst.py", "remoteApi.so", "remoteApi.dylib", "remoteApi.dll"];
 
