@@ -105,7 +105,7 @@ fn compare(arguments: &Arguments, program: &Path) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// What the robots of a program did by a record.
+/// Returns the paths that the robots of a program drove, from a record.
 fn driven(arguments: &Arguments, planned: &Planned) -> Result<Driven, Failure> {
     let record = read(arguments)?;
     let recorded = record.robots();
