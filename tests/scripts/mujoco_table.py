@@ -61,6 +61,9 @@ class Condition(NamedTuple):
         tree = ET.parse(world)
         [floor] = tree.iterfind(".//geom[@name='floor']")
         floor.set("friction", f"{self.friction} 0.005 0.0001")
+        for tyres in tree.iterfind("default/pair"):
+            sliding = f"{self.friction} {self.friction}"
+            tyres.set("friction", f"{sliding} 0.005 0.0001 0.0001")
         [step] = tree.iterfind(".//numeric[@name='step']")
         step.set("data", str(self.step))
         dice = random.Random(1)
