@@ -5,10 +5,12 @@ from __future__ import annotations
 import importlib
 import json
 import math
+import os
 import pathlib
 import shutil
 import subprocess
 import sys
+from collections.abc import Iterator
 from typing import Any
 
 import pytest
@@ -259,6 +261,40 @@ def test_wheels_scrub_as_plans_have_it(
     rims = sum(abs(float(rate)) for rate in world.data.qvel[6:10]) / 4.0 * RADIUS
     factor = 1.0 + (WHEELBASE / TRACK) ** 2
     assert turned == pytest.approx(2.0 * rims / TRACK / factor, rel=0.03)
+
+
+@pytest.fixture
+def display(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """A screen in memory, drawn on by the processor."""
+    server = shutil.which("Xvfb")
+    if server is None:
+        pytest.skip("Xvfb is not installed")
+    reader, writer = os.pipe()
+    with subprocess.Popen(
+        [server, "-displayfd", str(writer), "-screen", "0", "640x480x24"],
+        pass_fds=[writer],
+        stderr=subprocess.DEVNULL,
+    ) as running:
+        os.close(writer)
+        with os.fdopen(reader, encoding="ascii") as number:
+            monkeypatch.setenv("DISPLAY", f":{number.readline().strip()}")
+        monkeypatch.setenv("LIBGL_ALWAYS_SOFTWARE", "1")
+        yield
+        running.terminate()
+
+
+@pytest.mark.usefixtures("display")
+def test_a_window_closes_when_robots_have_arrived(
+    command: str, tmp_path: pathlib.Path
+) -> None:
+    """Several times: MuJoCo's thread that draws must have ended before Python ends."""
+    write(
+        tmp_path,
+        YARD.replace("until { front } detect within 50 centimeters", "10 centimeters"),
+    )
+    for _ in range(4):
+        events = run(command, tmp_path, "--view", "--speed", "20")
+        assert poses(events, "rover")[0]["x"] == pytest.approx(0.1, abs=0.001)
 
 
 @pytest.mark.parametrize(
