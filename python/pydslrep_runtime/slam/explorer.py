@@ -11,9 +11,11 @@ from ..pose import Pose, wrap_angle
 from .occupancy_grid import OccupancyGrid, Position
 from .topological_map import Frontier, Node, TopologicalMap
 
-# A closer look, if no frontier is left: lengths in steps, and m from a node that is new.
+# A closer look, if no frontier is left: lengths in steps, m from a node that is new, and steps
+# from the nearest node, without an obstacle between, where something may be unseen.
 CLOSE_LENGTHS = 1.0, 0.8, 0.6
 CLOSE = 0.15
+FAR_STEPS = 2.0
 
 
 class Rover(Protocol):
@@ -219,11 +221,11 @@ class Explorer:
         return [wrap_angle(index * math.tau / count) for index in range(count)]
 
     def _leads_on(self, goal: Position) -> bool:
-        """Whether there is room for another step, to where no node is near."""
+        """Whether there is room for another step, to what is not seen from a node nearby."""
         ends = (Pose(*goal, bearing).ahead(self._step) for bearing in self._bearings())
         return any(
             self._grid.is_path_clear(goal, end)
-            and not any(self._nodes_around(end, self._step))
+            and not any(self._nodes_around(end, FAR_STEPS * self._step))
             for end in ((pose.x, pose.y) for pose in ends)
         )
 
