@@ -8,6 +8,7 @@ import math
 import os
 import random
 import sys
+import threading
 import time
 from collections.abc import Sequence
 from pathlib import Path
@@ -38,6 +39,7 @@ SEEN = np.array(
     [1, 0, 1, 1, 1, 1], dtype=np.uint8
 )  # by groups of geoms: wheels are below hulls
 SLIP_TIME = 1.0  # s after which a wheel slips otherwise
+DRAWING_LIMIT = 5.0  # s that the window may take to close
 TIPPED = math.radians(30.0)  # from which on a robot does not stand on its wheels
 UNSTABLE = ("mjWARN_BADQPOS", "mjWARN_BADQVEL", "mjWARN_BADQACC")
 
@@ -53,6 +55,7 @@ class MuJoCo:
         self._world, self._wants_view = world, view
         self._speed = 1.0 if view and speed is None else speed
         self._view: Any = None
+        self._drawing: list[threading.Thread] = []  # which ends after the window
         self._due: float | None = None  # when the next step is, in real time
         self._robots: list[MuJoCoRobot] = []
         # Otherwise it writes a log into the current folder.
@@ -94,7 +97,9 @@ class MuJoCo:
         mujoco.mj_step(self.model, self.data, round(SETTLING / self.model.opt.timestep))
         self.data.time = 0.0
         if self._wants_view:
+            before = set(threading.enumerate())
             self._view = show(self.model, self.data)
+            self._drawing = [it for it in threading.enumerate() if it not in before]
 
     def advance(self) -> None:
         """Takes one step."""
@@ -118,8 +123,12 @@ class MuJoCo:
 
     def close(self) -> None:
         """Closes the window, if there is one."""
-        if self._view is not None:
-            self._view.close()
+        if self._view is None:
+            return
+        self._view.close()
+        # It draws in a thread of its own. If Python ended meanwhile, MuJoCo would wait for itself for ever.
+        for thread in self._drawing:
+            thread.join(DRAWING_LIMIT)
 
     def place_bodies(self) -> None:
         """Computes where everything is, for sensors, as of the latest step."""

@@ -13,6 +13,7 @@ from pydslrep_runtime.facts import RIM_SPEED
 from pydslrep_runtime.pose import Pose, wrap_angle
 from pydslrep_runtime.slam.occupancy_grid import OccupancyGrid, Position, Reading
 from pydslrep_runtime.slam.odometry.odometer import Odometer
+from pydslrep_runtime.slam.odometry.rover import OdometryRover
 from pydslrep_runtime.slam.odometry.scan import Scan
 from rooms import Rooms
 
@@ -140,6 +141,19 @@ class SlippingRobot:
         self.here = here
         if not self.ideal.rooms.holds(here.x, here.y, here.theta, 0.149):
             self.touched.append(here)
+
+
+def rover(robot: SlippingRobot) -> OdometryRover:
+    """The rover of a robot that explores by odometry."""
+    slam_session: Any = SimpleNamespace(
+        uses_odometry=True,
+        extent=20.0,
+        range=lambda robot, sensor, reported: reported,
+        cone=lambda robot, sensor, reported: reported,
+        radius=lambda robot, spanned: spanned,
+    )
+    driving: Any = robot
+    return OdometryRover(driving, slam_session)
 
 
 def is_in_body(point: Pose) -> bool:

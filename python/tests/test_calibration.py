@@ -7,8 +7,7 @@ import pytest
 from ideal_rover import at_once
 from pydslrep_runtime.slam.odometry.calibration import Factor
 from rooms import Pillar, Rooms
-from slipping_robot import SlippingRobot
-from test_odometry_rover import rover
+from slipping_robot import SlippingRobot, rover
 
 
 def test_a_factor_is_learnt_with_its_uncertainty() -> None:

@@ -59,6 +59,18 @@ def test_a_door_is_passed_if_the_robot_fits() -> None:
     assert max(node.x for node in explorer.map.nodes) < 2.0
 
 
+@pytest.mark.parametrize(("low", "start"), [(0.5, 0.5), (1.1, 0.6), (1.37, 0.7)])
+def test_a_narrow_door_is_found_from_nodes_beside_it(low: float, start: float) -> None:
+    # A robot that is unsure of its pose keeps 5 cm more: few ways lead through.
+    rooms = Rooms(4.0, 2.5, start=(start, 0.5))
+    rooms.walls = [Wall((2.0, 0.0), (2.0, low)), Wall((2.0, low + 0.74), (2.0, 2.5))]
+    rover = IdealRover(rooms, OccupancyGrid(RADIUS + 0.05))
+    explorer = Explorer(rover, rover.grid, STEP, math.pi, 20.0, prefers_walls=True)
+    at_once(explorer.explore())
+    assert not rover.touched
+    assert coverage(rooms, explorer) > 0.99
+
+
 def test_a_loop_is_closed_by_an_edge() -> None:
     rooms = Rooms(3.0, 3.0, start=(0.5, 0.5))
     rooms.walls = [Wall((1.0, y), (2.0, y)) for y in (1.05, 1.5, 1.95)]
@@ -157,7 +169,7 @@ class Misled(IdealRover):
         self.bumps: list[Position] = []
 
     async def drive_to(self, goal: Position, should_stop: Callable[[], bool]) -> bool:
-        if self.here.x < 2.0 < goal[0]:
+        if self.here.x < 2.0 < goal[0] + RADIUS:
             dx, dy = goal[0] - self.here.x, goal[1] - self.here.y
             heading = math.atan2(dy, dx)
             way = (2.0 - RADIUS - self.here.x) / math.cos(heading)

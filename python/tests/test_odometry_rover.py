@@ -2,7 +2,6 @@
 
 import math
 import random
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -17,7 +16,7 @@ from pydslrep_runtime.slam.odometry.rover import OdometryRover
 from pydslrep_runtime.slam.odometry.scan_log import ScanLog
 from pydslrep_runtime.slam.odometry.surface import SurfacePoints
 from rooms import Pillar, Rooms, Wall
-from slipping_robot import SlippingRobot
+from slipping_robot import SlippingRobot, rover
 
 AHEAD = [Reading(Pose(0.1, 0.0, 0.0), math.radians(170.0), 0.5, is_hit=True)]
 
@@ -27,18 +26,6 @@ class Grid(OccupancyGrid):
 
     def cells(self) -> tuple[set[Cell], set[Cell]]:
         return self._free, self._occupied - self._free
-
-
-def rover(robot: SlippingRobot) -> OdometryRover:
-    slam_session: Any = SimpleNamespace(
-        uses_odometry=True,
-        extent=20.0,
-        range=lambda robot, sensor, reported: reported,
-        cone=lambda robot, sensor, reported: reported,
-        radius=lambda robot, spanned: spanned,
-    )
-    driving: Any = robot
-    return OdometryRover(driving, slam_session)
 
 
 def test_exploring_with_wheels_that_slip() -> None:
@@ -116,15 +103,26 @@ class Walls:
         return self._points
 
 
-@pytest.mark.parametrize(("part", "corrected"), [(0.7, 0.0), (0.9, -12.0)])
-def test_few_oblique_walls_do_not_turn_the_robot(part: float, corrected: float) -> None:
+@pytest.mark.parametrize(
+    ("way", "degrees", "part", "corrected"),
+    [
+        (9.0, 12.0, 0.7, 0.0),
+        (9.0, 12.0, 0.9, -12.0),
+        # The longer no walls have told the heading, the less sure is the estimate.
+        (9.0, 9.0, 0.6, -9.0),
+        (2.5, 9.0, 0.6, 0.0),
+    ],
+)
+def test_few_oblique_walls_do_not_turn_the_robot(
+    way: float, degrees: float, part: float, corrected: float
+) -> None:
     slam, start = GraphSlam(Calibration()), Pose(0.0, 0.0, 0.0)
     first: Any = Walls(0.0, 1.0)
-    slam.add_keyframe(first, start, Leg(0.0))
+    slam.add_keyframe(first, start, Leg(0.0, 0.0))
     # Too far for a match with the first.
-    second: Any = Walls(12.0, part)
+    second: Any = Walls(degrees, part)
     second.middle_pose = lambda: Pose(9.0, 0.0, 0.0)
-    here = slam.add_keyframe(second, Pose(9.0, 0.0, 0.0), Leg(9.0))
+    here = slam.add_keyframe(second, Pose(9.0, 0.0, 0.0), Leg(way, 0.0))
     assert math.degrees(here.theta) == pytest.approx(corrected, abs=3.0)
 
 
@@ -140,6 +138,20 @@ def test_a_robot_that_was_held_finds_its_way() -> None:
     assert robot.off()[0] > 0.2
     at_once(exploring.localise())
     assert robot.off()[0] < 0.05
+
+
+def test_a_robot_that_was_held_is_lost_until_a_scan_fits() -> None:
+    slam, start = GraphSlam(Calibration()), Pose(0.0, 0.0, 0.0)
+    first: Any = Walls(0.0, 1.0)
+    slam.add_keyframe(first, start, Leg(0.0))
+    # As far as it drives, nothing is known; whether it was held decides.
+    for number, turn in ((1, 0.0), (2, None)):
+        there: Any = Walls(0.0, 1.0)
+        pose = Pose(9.0 * number, 0.0, 0.0)
+        there.middle_pose = lambda pose=pose: pose
+        slam.add_keyframe(there, pose, Leg(9.0, turn))
+        assert slam.is_lost == (turn is None)
+    assert slam.uncertain == {2}
 
 
 def test_a_robot_is_lost_where_two_places_look_alike() -> None:

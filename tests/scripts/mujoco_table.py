@@ -61,6 +61,9 @@ class Condition(NamedTuple):
         tree = ET.parse(world)
         [floor] = tree.iterfind(".//geom[@name='floor']")
         floor.set("friction", f"{self.friction} 0.005 0.0001")
+        for tyres in tree.iterfind("default/pair"):
+            sliding = f"{self.friction} {self.friction}"
+            tyres.set("friction", f"{sliding} 0.005 0.0001 0.0001")
         [step] = tree.iterfind(".//numeric[@name='step']")
         step.set("data", str(self.step))
         dice = random.Random(1)
@@ -154,9 +157,9 @@ def cell(result: dict[str, Any] | None) -> str:
         off = f"**{off}**"
     if not result["planned"]:
         return off
-    late = result["simulated"] / result["planned"] - 1.0
-    time = f"{100 * late:+.0f} %"
-    return f"{off}, **{time}**" if abs(late) > LATE else f"{off}, {time}"
+    share = late(result)
+    time = f"{100 * share:+.0f} %"
+    return f"{off}, **{time}**" if abs(share) > LATE else f"{off}, {time}"
 
 
 def table(results: Sequence[dict[str, Any]]) -> str:
@@ -169,6 +172,38 @@ def table(results: Sequence[dict[str, Any]]) -> str:
         ["---"] * (len(columns) + 1),
         *([name, *(cell(cells.get((name, it))) for it in columns)] for name in rows),
     ]
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+
+
+def late(result: dict[str, Any]) -> float:
+    """By what share of its plan a run takes longer; 0 where sensors decide when it ends."""
+    planned = result["planned"] if result["actions"] else None
+    return float(result["simulated"] / planned - 1.0) if planned else 0.0
+
+
+def worst(results: Sequence[dict[str, Any]]) -> str:
+    """A row for each condition: the programs that are the furthest off, and those outside of the aim."""
+    groups: dict[Condition, list[dict[str, Any]]] = {}
+    for each in results:
+        groups.setdefault(Condition(**each["condition"]), []).append(each)
+    lines = [
+        ["condition", "position", "heading", "time", "outside of the aim"],
+        ["---"] * 5,
+    ]
+    for condition, runs in groups.items():
+        far = max(runs, key=lambda it: it["metres"])
+        turned = max(runs, key=lambda it: it["degrees"])
+        slow = max(runs, key=late)
+        outside = [it["program"] for it in runs if "**" in cell(it)]
+        lines.append(
+            [
+                str(condition),
+                f"{1000 * far['metres']:.1f} mm ({far['program']})",
+                f"{turned['degrees']:.2f}° ({turned['program']})",
+                f"{100 * late(slow):+.0f} % ({slow['program']})",
+                ", ".join(outside) or "none",
+            ]
+        )
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
 
@@ -228,7 +263,7 @@ def main() -> None:
             results = list(pool.map(result, wanted))
     order = [program.name for program in found]
     results.sort(key=lambda each: order.index(each["program"]))
-    print(table(results))
+    print(worst(results), table(results), sep="\n\n")
 
 
 if __name__ == "__main__":

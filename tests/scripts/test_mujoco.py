@@ -5,10 +5,12 @@ from __future__ import annotations
 import importlib
 import json
 import math
+import os
 import pathlib
 import shutil
 import subprocess
 import sys
+from collections.abc import Iterator
 from typing import Any
 
 import pytest
@@ -23,6 +25,8 @@ POSITION, HEADING = 0.02, 1.5  # m and degrees: the aim
 WHEELS = ("lf", "lr", "rf", "rr")
 RADIUS = 0.05  # m
 PUSHES = (-1.0, 1.0, 1.0, -1.0)  # to the left, as a share of that ahead
+TURNING = (-1.0, -1.0, 1.0, 1.0)
+TRACK, WHEELBASE = 0.3, 0.25  # m
 
 YARD = """
 wheel l with radius 5
@@ -196,15 +200,18 @@ def test_a_script_that_is_started_by_hand_drives_in_a_world(
         assert "there is no display" in done.stderr
 
 
-def mecanum(command: str, folder: pathlib.Path) -> tuple[Any, Any]:
-    """A world with a mecanum robot, and the robot."""
-    wheels = "\n".join(f"wheelH {name} with radius 5" for name in WHEELS)
+def standing(
+    command: str, folder: pathlib.Path, drive: str, scene: str = ""
+) -> tuple[Any, Any]:
+    """A world with a robot on four wheels, and the robot."""
+    kind = "wheelH" if drive == "fwh" else "wheel"
+    wheels = "\n".join(f"{kind} {name} with radius 5" for name in WHEELS)
     text = (
-        f"{wheels}\nrobot rover type fwh with port 1 has {{ {' '.join(WHEELS)} }} wheels\n"
+        f"{wheels}\nrobot rover type {drive} with port 1 has {{ {' '.join(WHEELS)} }} wheels\n"
         "movement go of rover { move 1 meters }\n"
         "environment yard has { rover } robots with { go } moves\n"
     )
-    write(folder, text)
+    write(folder, text, scene)
     plan(command, folder, "--mjcf", "world.xml")
     engine = importlib.import_module("pydslrep_runtime.mujoco_engine")
     backend = importlib.import_module("pydslrep_runtime.backend")
@@ -215,22 +222,79 @@ def mecanum(command: str, folder: pathlib.Path) -> tuple[Any, Any]:
     return world, robot
 
 
+def roll(
+    world: Any, robot: Any, speed: float, shares: tuple[float, ...], seconds: float
+) -> None:
+    """Open loop: control would make up for what is wrong."""
+    for _ in range(round(seconds / world.time_step)):
+        robot.set_wheel_rates([share * speed / RADIUS for share in shares])
+        world.advance()
+
+
 def test_rollers_carry_a_robot_to_its_side(
     command: str, tmp_path: pathlib.Path
 ) -> None:
-    """Open loop: control would make up for rollers that drag."""
-    world, robot = mecanum(command, tmp_path)
+    world, robot = standing(command, tmp_path, "fwh")
     start, seconds, speed = robot.pose(), 2.0, 0.2
     # Rollers of one wheel must not touch each other: each wheel stands on one or two.
     assert len(WHEELS) <= world.data.ncon <= 2 * len(WHEELS)
-    for _ in range(round(seconds / world.time_step)):
-        robot.set_wheel_rates([push * speed / RADIUS for push in PUSHES])
-        world.advance()
+    roll(world, robot, speed, PUSHES, seconds)
     moved = robot.pose().relative_to(start)
     ramp = 0.2  # s
     assert moved.y == pytest.approx(speed * (seconds - ramp / 2.0), rel=0.06)
     assert abs(moved.x) < 0.02
     assert abs(math.degrees(moved.theta)) < 2.0
+
+
+@pytest.mark.parametrize("friction", [0.3, 0.8])
+@pytest.mark.parametrize("speed", [0.05, 0.2, 0.5])
+def test_wheels_scrub_as_plans_have_it(
+    command: str, tmp_path: pathlib.Path, friction: float, speed: float
+) -> None:
+    """Sideways sliding must not make a robot hop; then friction and geometry decide how much it turns."""
+    scene = f"[world]\nfriction = {friction}\n"
+    world, robot = standing(command, tmp_path, "fw", scene)
+    roll(world, robot, speed, TURNING, 1.0)
+    before, seconds = robot.pose(), 1.0
+    roll(world, robot, speed, TURNING, seconds)
+    turned = math.remainder(robot.pose().theta - before.theta, math.tau) / seconds
+    rims = sum(abs(float(rate)) for rate in world.data.qvel[6:10]) / 4.0 * RADIUS
+    factor = 1.0 + (WHEELBASE / TRACK) ** 2
+    assert turned == pytest.approx(2.0 * rims / TRACK / factor, rel=0.03)
+
+
+@pytest.fixture
+def display(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """A screen in memory, drawn on by the processor."""
+    server = shutil.which("Xvfb")
+    if server is None:
+        pytest.skip("Xvfb is not installed")
+    reader, writer = os.pipe()
+    with subprocess.Popen(
+        [server, "-displayfd", str(writer), "-screen", "0", "640x480x24"],
+        pass_fds=[writer],
+        stderr=subprocess.DEVNULL,
+    ) as running:
+        os.close(writer)
+        with os.fdopen(reader, encoding="ascii") as number:
+            monkeypatch.setenv("DISPLAY", f":{number.readline().strip()}")
+        monkeypatch.setenv("LIBGL_ALWAYS_SOFTWARE", "1")
+        yield
+        running.terminate()
+
+
+@pytest.mark.usefixtures("display")
+def test_a_window_closes_when_robots_have_arrived(
+    command: str, tmp_path: pathlib.Path
+) -> None:
+    """Several times: MuJoCo's thread that draws must have ended before Python ends."""
+    write(
+        tmp_path,
+        YARD.replace("until { front } detect within 50 centimeters", "10 centimeters"),
+    )
+    for _ in range(4):
+        events = run(command, tmp_path, "--view", "--speed", "20")
+        assert poses(events, "rover")[0]["x"] == pytest.approx(0.1, abs=0.001)
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,7 @@
 //! Knows poses and traces. Must never know the language, scenes or files: callers open them.
 //!
 //! * [`BagWriter`]: writes the records of a trace, and planned paths.
-//! * [`read`]: the poses and the readings in a bag, whoever recorded it.
+//! * [`read`]: the poses and the readings in a bag of any recorder.
 
 mod compression;
 mod error;
@@ -15,8 +15,8 @@ pub use error::BagError;
 pub use read::{Reading, Recording, Topic, read};
 pub use write::{BagWriter, RobotTopics, SensorTopic};
 
-/// How MCAP files begin.
+/// The first bytes of MCAP files.
 pub const MAGIC: &[u8] = mcap::MAGIC;
 
-/// What the bags of this program say of themselves, near their beginning.
+/// The mark of this program's bags, near their beginning.
 pub const LIBRARY: &str = "PyDSLRep";

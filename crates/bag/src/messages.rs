@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::BagError;
 
-/// What is between the definitions of a message and of those that it consists of.
+/// The separator between the definition of a message and those of its parts.
 const RULE: &str = "================================================================================";
 
 /// A type of messages.
@@ -69,7 +69,7 @@ pub(crate) const PATH: MessageType = MessageType {
     parts: &[HEADER, TIME, POSE_STAMPED, POSE, POINT, QUATERNION],
 };
 
-/// What a distance sensor measures.
+/// The measurement of a distance sensor.
 pub(crate) const RANGE: MessageType = MessageType {
     name: "sensor_msgs/msg/Range",
     fields: "uint8 ULTRASOUND=0\nuint8 INFRARED=1\nstd_msgs/Header header\nuint8 radiation_type\n\
@@ -80,7 +80,7 @@ pub(crate) const RANGE: MessageType = MessageType {
 /// Where a robot is, as localisation says it. Bags of this program have none.
 pub(crate) const LOCALISED_POSE: &str = "geometry_msgs/msg/PoseWithCovarianceStamped";
 
-/// A time, or the zero of those that nobody has set.
+/// A time; zero if it was not set.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Stamp {
     sec: i32,
@@ -95,7 +95,7 @@ impl Stamp {
         Self { sec, nanosec: u32::try_from(nanoseconds % second).unwrap_or_default() }
     }
 
-    /// Seconds; `None` if nobody has set it.
+    /// Seconds; `None` if it was not set.
     pub(crate) fn seconds(self) -> Option<f64> {
         (self != Self::default()).then(|| f64::from(self.sec) + f64::from(self.nanosec) * 1e-9)
     }
@@ -227,7 +227,7 @@ impl Range {
     }
 }
 
-/// What precedes the content of a message: its representation, and two bytes for options.
+/// The bytes before the content of a message: its representation, and two bytes for options.
 const LITTLE_ENDIAN: [u8; 4] = [0, 1, 0, 0];
 const BIG_ENDIAN: [u8; 4] = [0, 0, 0, 0];
 

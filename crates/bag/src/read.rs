@@ -14,12 +14,12 @@ use crate::compression::decompress;
 use crate::messages::{LOCALISED_POSE, LocalisedPose, ODOMETRY, Odometry, RANGE, Range, Stamp, decode};
 use crate::{BagError, RobotTopics};
 
-/// What a bag says of robots.
+/// The robots' messages in a bag.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Recording {
     /// By name.
     pub topics: BTreeMap<String, Topic>,
-    /// Whether it ends in the middle, as it does when its recorder was killed.
+    /// True if it ends in the middle, as it does when its recorder was killed.
     pub truncated: bool,
 }
 
@@ -34,7 +34,7 @@ pub enum Topic {
     Readings(Vec<Reading>),
 }
 
-/// What a sensor read.
+/// A reading of a sensor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reading {
     /// Seconds.
@@ -64,7 +64,7 @@ impl Recording {
         self.truncated |= next.truncated;
     }
 
-    /// Whether it says where a robot was.
+    /// Returns whether it has poses of a robot.
     pub fn has(&self, robot: &RobotTopics) -> bool {
         !self.poses(robot).is_empty()
     }
@@ -123,7 +123,7 @@ impl Recording {
 /// Reads a bag of at most `size` bytes.
 ///
 /// # Errors
-/// If it cannot be read, or is none. What is in front of a sudden end is read.
+/// If it cannot be read, or is not a bag. Of a truncated bag, everything before the end is read.
 pub fn read(mut input: impl Read, size: u64) -> Result<Recording, BagError> {
     // No record can be longer than its file, and nothing may ask for more memory than that.
     let limit = usize::try_from(size).unwrap_or(usize::MAX);
@@ -148,7 +148,7 @@ pub fn read(mut input: impl Read, size: u64) -> Result<Recording, BagError> {
     Ok(content.recording(truncated))
 }
 
-/// What has been read of a bag.
+/// The content of a bag as it is read.
 #[derive(Default)]
 struct Content {
     /// The types of messages, by number.

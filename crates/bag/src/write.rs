@@ -16,7 +16,7 @@ use crate::messages::{
 };
 use crate::{BagError, LIBRARY};
 
-/// What the topics and frames of a robot are called.
+/// The names of a robot's topics and frames.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RobotTopics {
     /// The robot's name in traces.
@@ -35,14 +35,14 @@ pub struct RobotTopics {
     pub sensors: Vec<SensorTopic>,
 }
 
-/// What the topic of a sensor is called, and what the sensor is like.
+/// A sensor with the name of its topic.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SensorTopic {
     /// The sensor's name in traces.
     pub sensor: String,
     /// Of its readings.
     pub topic: String,
-    /// How far it sees, metres; `None` for a bumper, which measures no distance.
+    /// The range of the sensor, metres; `None` for a bumper, which measures no distance.
     pub range: Option<f64>,
     /// The angle of its cone, radians.
     pub cone: f64,
@@ -175,7 +175,7 @@ fn path(topics: &RobotTopics, plan: &[TimedPose]) -> PathMessage {
 #[expect(clippy::cast_possible_truncation, reason = "the message has single precision")]
 fn range(sensor: &SensorTopic, reading: Option<f64>, time: u64) -> Range {
     let is_bumper = sensor.range.is_none();
-    // A sensor that only tells whether something is there has a range of one distance: REP 117.
+    // A sensor that only reports whether something is there has a range of one distance: REP 117.
     let max_range = sensor.range.unwrap_or_default();
     let range = match reading {
         None => f64::INFINITY,

@@ -33,7 +33,7 @@ impl Arrivals {
     }
 }
 
-/// Whether a future can go on.
+/// True if a future can continue.
 #[derive(Debug, Default)]
 struct Wakefulness(AtomicBool);
 
@@ -49,7 +49,7 @@ impl Executor {
         self.arrivals.clone()
     }
 
-    /// Gives futures that can go on their turn, and returns whether any may be able to go on after it.
+    /// Polls futures that can continue, and returns whether any may be able to continue afterwards.
     pub(crate) fn turn(&mut self) -> bool {
         self.running.extend(self.arrivals.0.take());
         self.wakefulness.0.store(false, Ordering::Relaxed);

@@ -52,8 +52,8 @@ impl LanguageServer {
         self.0.handle(message);
     }
 
-    /// To be called when no message waits: goes on with long requests, a part of each, and reports what messages have
-    /// changed. Returns whether there is more to do; messages may come first.
+    /// Continues long requests, a part of each, and reports the changes of earlier messages. Call it when no message
+    /// waits. Returns whether there is more to do; messages may come first.
     pub fn proceed(&mut self) -> bool {
         self.0.proceed()
     }
@@ -139,7 +139,7 @@ impl Simulator {
         replies(self.0.session.expire_clients(simulation::duration(now)))
     }
 
-    /// Whether the simulation runs and no client steps it: then time passes with [`Self::tick`].
+    /// Returns whether the simulation runs and no client steps it: then time passes with [`Self::tick`].
     #[wasm_bindgen(getter, js_name = isFreeRunning)]
     pub fn is_free_running(&self) -> bool {
         self.0.session.is_free_running()

@@ -10,7 +10,7 @@ use pydslrep_workspace::{MemoryFiles, SceneError, Workspace};
 use ropey::Rope;
 use serde::Deserialize;
 
-/// What to simulate.
+/// The input of a simulation.
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 struct Input {

@@ -24,14 +24,14 @@ STOP_LIMIT = 5.0  # s, to stop the robots
 
 def end_with_parent() -> None:
     """Ends this process after the end of its input, which the script finds empty."""
-    lifeline = os.dup(0)
+    parent_pipe = os.dup(0)
     nothing = os.open(os.devnull, os.O_RDONLY)
     os.dup2(nothing, 0)
     os.close(nothing)
 
     def watch() -> None:
         try:
-            while os.read(lifeline, 1024):
+            while os.read(parent_pipe, 1024):
                 pass
         except OSError:
             pass  # it has ended as well

@@ -10,11 +10,11 @@ use pydslrep_output::{Kind, WriteError};
 pub(crate) enum Failure {
     /// To be reported as an error.
     Message {
-        /// What happened.
+        /// The error.
         message: String,
-        /// What to do about it.
+        /// Advice for the user.
         help: Option<String>,
-        /// What programs tell it by, where they can do something about it.
+        /// An identifier for programs that can act on the error.
         reason: Option<String>,
     },
     /// Rendered already: problems in a file that is not a program, with its lines.
@@ -32,7 +32,7 @@ impl Failure {
         Self::Message { message: message.into(), help: None, reason: None }
     }
 
-    /// Adds what to do about it.
+    /// Adds advice.
     pub(crate) fn help(self, help: impl Into<String>) -> Self {
         match self {
             Self::Message { message, reason, .. } => {
@@ -42,7 +42,7 @@ impl Failure {
         }
     }
 
-    /// Adds what programs tell it by.
+    /// Adds an identifier for programs.
     pub(crate) fn reason(self, known_as: Option<String>) -> Self {
         match self {
             Self::Message { message, help, .. } => Self::Message { message, help, reason: known_as },

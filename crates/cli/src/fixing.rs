@@ -60,7 +60,7 @@ impl Fixed {
         Ok(())
     }
 
-    /// How many problems were fixed.
+    /// Returns the number of problems fixed.
     pub(crate) fn count(&self) -> usize {
         self.problems.values().sum()
     }

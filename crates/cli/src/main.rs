@@ -7,7 +7,7 @@
 //!   several of them share.
 //! * [`help`]: the examples and notes in the help of commands.
 //! * [`inputs`]: the programs a command works on, and the workspace around them.
-//! * [`report`]: what is printed: diagnostics in every format, tables, failures.
+//! * [`report`]: the output: diagnostics in every format, tables, failures.
 //! * [`run`]: a run, from a Python interpreter to its result.
 //! * [`fixing`]: `check --fix`.
 

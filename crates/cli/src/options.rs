@@ -16,7 +16,7 @@ pub(crate) fn target_parser() -> impl TypedValueParser<Value = Target> {
         .try_map(|word| Target::from_word(&word).ok_or("no target"))
 }
 
-/// What moves the robots.
+/// The engine that moves the robots.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Engine {
     /// Robots move exactly as their wheels roll

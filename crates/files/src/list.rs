@@ -34,7 +34,7 @@ pub(crate) fn list(folder: &Path, max_entries: usize) -> Listing {
     listing
 }
 
-/// Whether [`list`] would find a file; visits only the folders on the way to it.
+/// Returns whether [`list`] would find a file; visits only the folders on the way to it.
 pub(crate) fn lists(folder: &Path, file: &Path) -> bool {
     let kind = DocumentKind::of_file(file);
     if !matches!(kind, Some(DocumentKind::Program | DocumentKind::Scene)) || !file.starts_with(folder) {
@@ -60,7 +60,7 @@ fn walk(folder: &Path) -> WalkBuilder {
     walk
 }
 
-/// Whether the search of a folder comes to an end.
+/// Returns whether the search of a folder comes to an end.
 fn is_searchable(entry: &DirEntry) -> bool {
     !entry.file_type().is_some_and(|kind| kind.is_dir()) || unreadable_rules(entry.path()).is_none()
 }

@@ -1,5 +1,5 @@
-//! Regular files, the only ones that are opened: a pipe or a device could make its reader wait forever, or take the input
-//! that somebody else waits for.
+//! Regular files, the only ones that are opened: a pipe or a device could make its reader wait forever, or take input
+//! from another reader.
 
 use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{self, Read};
@@ -42,14 +42,14 @@ pub fn read_start(path: &Path, count: u64) -> Result<Vec<u8>, ReadError> {
     Ok(bytes)
 }
 
-/// What a stream holds, if that is not more than `max` bytes.
+/// Returns the content of a stream, if that is not more than `max` bytes.
 pub(crate) fn take(stream: impl Read, max: u64) -> Result<Vec<u8>, ReadError> {
     let mut bytes = Vec::new();
     stream.take(max.saturating_add(1)).read_to_end(&mut bytes).map_err(|error| read_error(&error))?;
     if bytes.len() as u64 > max { Err(ReadError::TooLarge) } else { Ok(bytes) }
 }
 
-/// Whether Windows takes the name of a file for that of a device: `aux.scene.toml`, wherever it is.
+/// Returns whether Windows takes the name of a file for that of a device: `aux.scene.toml`, wherever it is.
 fn is_device(path: &Path) -> bool {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     is_reserved_on_windows(name.split('.').next().unwrap_or_default().trim_end())

@@ -51,7 +51,7 @@ pub fn code_lenses(
     lenses
 }
 
-/// Whether a declaration has no errors and none of its lines is being edited.
+/// Returns whether a declaration has no errors and none of its lines is being edited.
 fn is_complete(database: &Database, entity: &EntityRef<'_>, typed: &[u32]) -> bool {
     let lines = || lines(database, entity.file, body(entity));
     entity.parse.errors.is_empty() && (typed.is_empty() || !typed.iter().any(|place| lines().touches(*place)))

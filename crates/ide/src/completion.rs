@@ -28,7 +28,7 @@ use crate::FilePosition;
 /// The maximum number of items in a list: long lists are slow in editors, and nobody reads them.
 const MAX_ITEMS: usize = 200;
 
-/// What triggered a completion request.
+/// The event that triggered a completion request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CompletionTrigger {
     /// The user has asked for the list.

@@ -33,8 +33,8 @@ fn name_in(entity: &EntityRef<'_>, offset: u32) -> Option<NameAt> {
     references.find(|(_, name)| touches(name)).map(|(kind, name)| found(kind, name))
 }
 
-/// What the name at the cursor refers to: all declarations of that name in one file. (Two of the same kind are an error,
-/// and a reference could mean either.)
+/// The referent of the name at the cursor: all declarations of that name in one file. Two of the same kind are an
+/// error, and a reference could mean either.
 #[derive(Debug, Clone)]
 pub(crate) struct Referent {
     pub(crate) kind: EntityKind,

@@ -17,7 +17,7 @@ pub fn codes_to_fix_all(database: &Database, file: FileId, shown: &[Diagnostic])
     codes
 }
 
-/// Whether a diagnostic has a safe fix.
+/// Returns whether a diagnostic has a safe fix.
 pub fn has_safe_fix(diagnostic: &Diagnostic) -> bool {
     diagnostic.fixes.iter().any(|fix| fix.safe)
 }

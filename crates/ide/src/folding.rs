@@ -15,7 +15,7 @@ pub struct Fold {
     pub span: Span,
     /// Its kind.
     pub kind: FoldKind,
-    /// Whether other text follows on its last line, so that editors which fold whole lines must keep that line.
+    /// True if other text follows on its last line, so that editors which fold whole lines must keep that line.
     pub keeps_last_line: bool,
 }
 

@@ -11,7 +11,7 @@ use crate::cursor::referent_at;
 pub struct Highlight {
     /// Its range in the file.
     pub span: Span,
-    /// Whether it is a declaration rather than a reference.
+    /// True for a declaration, false for a reference.
     pub is_declaration: bool,
 }
 

@@ -58,7 +58,7 @@ pub(crate) fn describe(database: &Database, id: EntityId) -> Option<String> {
     }
 }
 
-/// What the condition under the cursor asks.
+/// Returns the hover for the condition under the cursor.
 fn condition(database: &Database, position: FilePosition) -> Option<Hover> {
     entities_at(database, position).into_iter().find_map(|entity| {
         let Some(Entity::Movement(movement)) = &entity.parse.entity else { return None };

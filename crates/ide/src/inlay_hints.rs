@@ -103,8 +103,8 @@ pub fn inlay_hints(
     hints
 }
 
-/// Whether an error at the start of a line is caused by the edited line before it: an incomplete `at` takes the next
-/// token for its speed.
+/// Returns whether an error at the start of a line is caused by an edit of the line before: an incomplete `at` takes
+/// the next token for its speed.
 fn is_caused_by_edit(database: &Database, file: FileId, error: Span, typed: &[Span]) -> bool {
     let follows = |line: &Span| {
         line.end < error.start
@@ -157,12 +157,12 @@ fn movement_hints(
     Some(hints)
 }
 
-/// Whether a part of an entity is in sight.
+/// Returns whether a part of an entity is in sight.
 fn is_in(part: Span, sight: Span) -> bool {
     part.start <= sight.end && sight.start <= part.end
 }
 
-/// What the blocks of an action are within.
+/// Returns the nesting of the blocks of an action.
 fn within_blocks(within: Within, action: &ast::Action) -> Within {
     match &action.kind {
         ast::ActionKind::Repeat(ast::Repeat { rounds: Some(ast::Rounds::Until(_)), .. }) => {

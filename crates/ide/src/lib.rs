@@ -59,8 +59,8 @@ pub use linked_editing::linked_editing_ranges;
 pub use on_type::{format_after_brace, format_after_line_break};
 pub use planned_action::{ActionAt, NumberedAction, PlannedAt, PlannedCall, action_place, planned_at};
 pub use planned_path::{
-    BodySize, Met, NoPath, Obstacle, ObstaclePath, Outline, PlannedAction, PlannedCollision, PlannedLeg,
-    PlannedPath, PlannedPose, PlannedRobot, PossibleWay, SensorCone, planned_path,
+    BodySize, CollisionTarget, NoPath, Obstacle, ObstaclePath, Outline, PlannedAction, PlannedCollision,
+    PlannedLeg, PlannedPath, PlannedPose, PlannedRobot, PossibleWay, SensorCone, planned_path,
 };
 pub use quick_fixes::{QuickFix, quick_fixes};
 pub use refactorings::{Refactoring, RefactoringKind, refactorings};

@@ -219,7 +219,7 @@ impl Line {
         }
     }
 
-    /// Whether the line goes on with an entity that is not complete before it: its clauses belong on one line.
+    /// Returns whether the line continues an entity that is not complete before it: its clauses belong on one line.
     fn continues_entity(&self, entity: &EntityRef<'_>, typed: &[Token]) -> bool {
         let is_complete = entity.parse.entity.is_some()
             && entity.parse.errors.is_empty()
@@ -230,7 +230,7 @@ impl Line {
     }
 }
 
-/// Whether the last action before a line is incomplete.
+/// Returns whether the last action before a line is incomplete.
 fn continues(database: &Database, entity: &EntityRef<'_>, typed: &[Token]) -> bool {
     let start = entity.span.start;
     let own: Vec<Token> =

@@ -80,9 +80,9 @@ pub struct SensorCone {
     pub y: f64,
     /// Where it looks.
     pub theta: f64,
-    /// How far it sees.
+    /// Its range, metres.
     pub range: f64,
-    /// How wide.
+    /// The angle of its cone.
     pub cone: f64,
 }
 
@@ -108,7 +108,7 @@ pub struct PlannedLeg {
     pub action: PlannedAction,
     /// When it begins; `None` after an action of unknown duration.
     pub start: Option<f64>,
-    /// How long it takes.
+    /// Its duration, seconds.
     pub duration: f64,
     /// The index of its last pose among those of its robot; it starts at the last pose of the previous leg.
     pub last: usize,
@@ -126,7 +126,7 @@ pub struct PlannedAction {
     /// The rounds of the repetitions that it is in, from 1, the outermost first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub rounds: Vec<u32>,
-    /// How many rounds each of these repetitions has.
+    /// The number of rounds of each of these repetitions.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub counts: Vec<u32>,
     /// The statements that lead to it by `do`, the outermost first.
@@ -145,7 +145,7 @@ pub struct Obstacle {
     /// Where it is; of one that moves, where it is at the start.
     #[serde(flatten)]
     pub outline: Outline,
-    /// How it moves, if it does.
+    /// Its path, if it moves.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub path: Option<ObstaclePath>,
 }
@@ -168,12 +168,12 @@ pub enum Outline {
     },
 }
 
-/// How an obstacle moves: straight between points, each at a constant speed. Its heading stays.
+/// The path of a moving obstacle: straight between points, each section at a constant speed. Its heading stays.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ObstaclePath {
     /// Seconds, x and y of each, in the order of their times.
     pub points: Vec<(f64, f64, f64)>,
-    /// Whether it goes there and back, again and again; else it stays at the last point.
+    /// True if it goes back and forth for ever; otherwise it stays at the last point.
     pub repeat: bool,
 }
 
@@ -182,7 +182,7 @@ pub struct ObstaclePath {
 pub struct PlannedCollision {
     /// Its name.
     pub robot: String,
-    /// What it is doing.
+    /// The action that it is doing.
     pub action: Option<PlannedAction>,
     /// When; `None` after an action of unknown duration.
     pub t: Option<f64>,
@@ -192,14 +192,14 @@ pub struct PlannedCollision {
     pub y: f64,
     /// Its heading then.
     pub theta: f64,
-    /// What it meets.
-    pub with: Met,
+    /// The other side of the collision.
+    pub with: CollisionTarget,
 }
 
-/// What a robot meets, by its name.
+/// The thing that a robot collides with, by name.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Met {
+pub enum CollisionTarget {
     /// Something on the floor.
     Obstacle(String),
     /// Another robot.
@@ -280,7 +280,7 @@ fn sensor(sensor: &scenery::Sensor) -> SensorCone {
 fn obstacle(obstacle: &scenery::Obstacle) -> Obstacle {
     let outline = match obstacle.shape {
         Shape::Cylinder { radius } => Outline::Circle { centre: (obstacle.pose.x, obstacle.pose.y), radius },
-        // What is not round has its own corners.
+        // Shapes that are not round have corners of their own.
         _ => Outline::Polygon { corners: obstacle.outline(0) },
     };
     Obstacle { name: obstacle.name.clone(), outline, path: obstacle.trajectory.as_ref().map(obstacle_path) }
@@ -292,13 +292,17 @@ fn obstacle_path(trajectory: &scenery::Trajectory) -> ObstaclePath {
 }
 
 fn collisions(environment: &Environment, scene: &Scene, plan: &Plan) -> Vec<PlannedCollision> {
-    let met = |thing| match thing {
-        Thing::Obstacle(index) => scene.obstacles.get(index).map(|thing| Met::Obstacle(thing.name.clone())),
-        Thing::Robot(index) => scene.robots.get(index).map(|robot| Met::Robot(robot.name.clone())),
+    let target = |thing| match thing {
+        Thing::Obstacle(index) => {
+            scene.obstacles.get(index).map(|thing| CollisionTarget::Obstacle(thing.name.clone()))
+        }
+        Thing::Robot(index) => {
+            scene.robots.get(index).map(|robot| CollisionTarget::Robot(robot.name.clone()))
+        }
     };
     let named = |found: Collision| {
         let robot = scene.robots.get(found.robot)?.name.clone();
-        let (action, with) = (action(environment, found.action, &found.place), met(found.with)?);
+        let (action, with) = (action(environment, found.action, &found.place), target(found.with)?);
         let Pose { x, y, theta } = found.pose;
         Some(PlannedCollision { robot, action, t: found.time, x, y, theta, with })
     };
@@ -447,7 +451,10 @@ mod tests {
         let pole = Obstacle { name: "pole".to_owned(), outline, path: None };
         assert_eq!(path.obstacles, [pole]);
         let [collision] = &path.collisions[..] else { panic!("{:?}", path.collisions) };
-        assert_eq!((collision.robot.as_str(), &collision.with), ("rover", &Met::Obstacle("pole".to_owned())));
+        assert_eq!(
+            (collision.robot.as_str(), &collision.with),
+            ("rover", &CollisionTarget::Obstacle("pole".to_owned()))
+        );
         assert_eq!(collision.action.as_ref().unwrap().text, "move 3 meters");
         let front = collision.y + path.robots[0].body.length / 2.0;
         assert!((front - 0.9).abs() < 0.002, "{collision:?}");

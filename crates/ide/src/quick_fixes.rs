@@ -10,7 +10,7 @@ pub struct QuickFix {
     pub diagnostic: Diagnostic,
     /// The fix.
     pub fix: Fix,
-    /// Whether it is the preferred fix: the only one of its diagnostic, and safe.
+    /// True for the preferred fix: the only one of its diagnostic, and safe.
     pub is_preferred: bool,
 }
 

@@ -81,7 +81,7 @@ pub fn refactorings(database: &Database, file: FileId, range: Span) -> Vec<Refac
     found
 }
 
-/// Those that write what the article does not have.
+/// Refactorings that write forms which the article does not have.
 fn extending(selection: &Selection<'_>) -> impl Iterator<Item = Refactoring> {
     let offers = [
         extract::extract(selection),
@@ -116,7 +116,7 @@ impl<'a> Selection<'a> {
         entity.parse.errors.is_empty().then_some(Self { database, file, entity, range })
     }
 
-    /// Whether a range in the entity touches the selection.
+    /// Returns whether a range in the entity touches the selection.
     fn touches(&self, span: Span) -> bool {
         span.start <= self.range.end && self.range.start <= span.end
     }

@@ -22,8 +22,8 @@ pub fn references(
     Some(places)
 }
 
-/// How many entities declare or use the name at a position, or one of the same name in a file that imports it; found
-/// without looking at them.
+/// Returns the number of entities that declare or use the name at a position, including uses of the same name in files
+/// that import its file; found without reading them.
 pub fn count_mentions(database: &Database, position: FilePosition) -> usize {
     let Some(Referent { home, kind, name, .. }) = referent_at(database, position) else { return 0 };
     let users = |file| database.users(file, kind, &name).len();

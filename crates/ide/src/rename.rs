@@ -71,7 +71,7 @@ pub fn rename(database: &Database, position: FilePosition, new: &str) -> Result<
     Ok(renamed.places.into_iter().map(edit).collect())
 }
 
-/// Whether a name at a location is separated from the text before it.
+/// Returns whether a name at a location is separated from the text before it.
 pub(crate) fn is_separated(database: &Database, place: FileSpan) -> bool {
     let before = Span::new(place.span.start.saturating_sub(1), place.span.start);
     let apart = |c: char| c.is_ascii_whitespace() || "{},:/\"".contains(c);

@@ -131,7 +131,7 @@ impl<'a> Names<'a> {
     }
 }
 
-/// Whether it is a keyword in the actions of a movement, where it is no name.
+/// Returns whether a token is a keyword in the actions of a movement, where it cannot be a name.
 fn is_of_statements(token: TokenKind) -> bool {
     let elsewhere = [TokenKind::Import, TokenKind::Distance, TokenKind::Bumper];
     TokenKind::CONTEXTUAL.contains(&token) && !elsewhere.contains(&token)

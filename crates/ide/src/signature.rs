@@ -96,7 +96,7 @@ struct Typed {
     text: String,
     /// Its tokens, without comments.
     tokens: Vec<Token>,
-    /// Whether the cursor is on a later line than the last of them.
+    /// True if the cursor is on a later line than the last token.
     on_new_line: bool,
 }
 
@@ -180,9 +180,9 @@ fn is_statement(token: TokenKind) -> bool {
 struct Part {
     text: &'static str,
     span: Span,
-    /// Whether a brace opens before it.
+    /// True if a brace opens before it.
     opens: bool,
-    /// Whether it may be left out.
+    /// True if it may be left out.
     optional: bool,
 }
 
@@ -229,7 +229,7 @@ fn current(parts: &[Part], typed: &[Token], expected: &[Expected]) -> Option<usi
             }
             TokenKind::Name | TokenKind::Comma => {}
             _ => match token.spelling().map(|word| rest.iter().position(|part| part.is_word(word))) {
-                // An action has no keyword of another form, nor leaves out one that must be there.
+                // An action has no keyword of another form, and leaves out none that is required.
                 Some(None) if is_action => return None,
                 Some(Some(place)) if is_action && rest[..place].iter().any(Part::must_be_written) => {
                     return None;
@@ -249,7 +249,7 @@ impl Part {
         self.text.split(" | ").any(|choice| choice == word)
     }
 
-    /// Whether it is a keyword, or one of several, that the form always has.
+    /// Returns whether it is a keyword, or one of several, that the form always has.
     fn must_be_written(&self) -> bool {
         !self.optional && self.text.starts_with(|first: char| first.is_ascii_lowercase())
     }

@@ -8,7 +8,7 @@ pub(crate) struct Statements {
     /// One per open block, the movement's own first: the latest statement in it, without what is in its blocks. Names are
     /// [`TokenKind::Name`], also those that are keywords elsewhere.
     blocks: Vec<Vec<Token>>,
-    /// Whether the last token is in a list of names.
+    /// True if the last token is in a list of names.
     in_list: bool,
 }
 
@@ -27,7 +27,7 @@ impl Statements {
         (!statements.blocks.is_empty()).then_some(statements)
     }
 
-    /// Whether the last token is in a list of names.
+    /// Returns whether the last token is in a list of names.
     pub(crate) fn in_list(&self) -> bool {
         self.in_list
     }
@@ -37,7 +37,7 @@ impl Statements {
         self.blocks.last().map_or(&[], Vec::as_slice)
     }
 
-    /// The latest statement of each open block, the innermost first: all but the first go on around it.
+    /// The latest statement of each open block, the innermost first: all but the first continue after it.
     pub(crate) fn inside_out(&self) -> impl Iterator<Item = &[Token]> {
         self.blocks.iter().rev().map(Vec::as_slice).filter(|statement| !statement.is_empty())
     }
@@ -77,7 +77,7 @@ impl Statements {
     }
 }
 
-/// Whether `next` can follow the keyword of an action, and not a name.
+/// Returns whether `next` can follow the keyword of an action and cannot be a name.
 fn follows_only(action: TokenKind, next: TokenKind) -> bool {
     match action {
         TokenKind::Wait | TokenKind::Repeat => next.is_number() || next == TokenKind::Until,

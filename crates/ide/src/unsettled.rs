@@ -1,4 +1,5 @@
-//! What the next word of the statement being typed will settle: problems that editors do not show until its line is left.
+//! Problems that the next word of the statement being typed will settle: editors do not show them until its line is
+//! left.
 
 use std::cell::OnceCell;
 
@@ -19,14 +20,14 @@ pub struct TypedStatement<'a> {
     tokens: Vec<Token>,
     /// From the end of the last complete word on the line to the cursor.
     gap: Span,
-    /// Whether a list is begun before the cursor and ends on another line, if at all.
+    /// True if a list opens before the cursor and does not close on the same line.
     is_list_open: bool,
-    /// Whether the last character may begin a comment or an escaped name.
+    /// True if the last character may begin a comment or an escaped name.
     is_sign_begun: bool,
-    /// What follows the cursor and is read as part of the statement, because that is not complete. Only some problems ask
-    /// for it, and it costs as much as reading the entity again.
+    /// The text after the cursor that is parsed as part of the statement, because that is not complete. Only some
+    /// problems ask for it, and it costs as much as reading the entity again.
     taken: OnceCell<Option<Span>>,
-    /// The same if the word at the cursor is not the one that is meant.
+    /// The same without the word at the cursor, which may not be the intended one.
     taken_without_word: OnceCell<Option<Span>>,
 }
 
@@ -72,7 +73,7 @@ impl<'a> TypedStatement<'a> {
         self.position.offset
     }
 
-    /// Whether its next word will settle a problem.
+    /// Returns whether the next word of the statement will settle a problem.
     pub fn settles(&self, problem: &Diagnostic) -> bool {
         if problem.file != self.position.file {
             return false;
@@ -105,15 +106,15 @@ impl<'a> TypedStatement<'a> {
         self.tokens.iter().any(|(token, _)| *token == TokenKind::OpenBrace)
     }
 
-    /// Whether the cursor is inside a range, or at the end of a word.
+    /// Returns whether the cursor is inside a range, or at the end of a word.
     fn is_typed(&self, span: Span) -> bool {
         let place = self.position.offset;
         let ends_word = || self.tokens.iter().any(|(token, word)| word.end == place && is_word(*token));
         span.start < place && (place < span.end || place == span.end && ends_word())
     }
 
-    /// Whether a syntax error is there because the statement is not complete: something is missing at the cursor, or what
-    /// follows is read as part of the statement.
+    /// Returns whether a syntax error is there because the statement is not complete: something is missing at the
+    /// cursor, or the text after it is parsed as part of the statement.
     fn is_caused(&self, error: Span) -> bool {
         let is_missing = error.is_empty() && self.gap.touches(error.start);
         let is_in_list =
@@ -121,7 +122,7 @@ impl<'a> TypedStatement<'a> {
         is_missing || self.takes(error) || is_in_list || self.is_begun(error) || self.lacks_taken_brace(error)
     }
 
-    /// Whether an error is the absence of a brace that the statement has taken for its own block or list.
+    /// Returns whether an error is a missing brace that the statement has taken for its own block or list.
     fn lacks_taken_brace(&self, error: Span) -> bool {
         let is_brace = |taken: Span| self.tokens.contains(&(TokenKind::CloseBrace, taken));
         let end = body(&self.entity).end;
@@ -142,7 +143,7 @@ impl<'a> TypedStatement<'a> {
         *self.taken_without_word.get_or_init(|| taken_by_statement(self.database, &self.entity, place, true))
     }
 
-    /// Whether an error is at a keyword that begins a declaration, of which the cursor is the next word.
+    /// Returns whether an error is at a keyword that begins a declaration, and the cursor at its next word.
     fn is_begun(&self, error: Span) -> bool {
         let begins = |(token, span): &Token| {
             let is_declaration = TokenKind::DECLARATIONS.contains(token);
@@ -160,7 +161,7 @@ impl<'a> TypedStatement<'a> {
             .is_some_and(|(_, token)| token.touches(span.start) && token.touches(self.position.offset))
     }
 
-    /// Whether the movements of the environment in which a robot is listed are yet to come.
+    /// Returns whether the movements of the environment that lists a robot can still follow.
     fn may_list_movements(&self, robot: Span) -> bool {
         let place = self.position.offset;
         let is_own = self.entity.span.start <= robot.start && robot.end <= self.entity.span.end;
@@ -172,7 +173,7 @@ impl<'a> TypedStatement<'a> {
             && last.is_some_and(|(token, _)| *token != TokenKind::Moves)
     }
 
-    /// Whether the cursor is in the list of an environment's movements.
+    /// Returns whether the cursor is in the list of an environment's movements.
     fn lists_movements(&self) -> bool {
         let Some(Entity::Environment(environment)) = &self.entity.parse.entity else { return false };
         let contains = |list: &References| {
@@ -187,8 +188,8 @@ fn is_word(token: TokenKind) -> bool {
     token.is_name() || token.is_keyword() || token.is_number()
 }
 
-/// What follows the cursor and is read as part of the statement being typed; `None` if the statement may be complete. In a
-/// movement that is one token, for actions begin anew.
+/// Returns the text after the cursor that is parsed as part of the statement being typed; `None` if the statement may
+/// be complete. In a movement that is one token, for actions begin anew.
 fn taken_by_statement(
     database: &Database,
     entity: &EntityRef<'_>,

@@ -1,4 +1,4 @@
-//! What uses an entity, directly or through others.
+//! The users of an entity, direct and through others.
 
 use pydslrep_analysis::{Database, EntityId, FileId};
 use pydslrep_syntax::EntityKind;

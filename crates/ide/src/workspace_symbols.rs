@@ -59,7 +59,7 @@ impl SymbolSearch {
         }
     }
 
-    /// What was found and is still there, the best match first.
+    /// Returns the symbols found that still exist, the best match first.
     pub fn finish(mut self, database: &Database) -> Vec<WorkspaceSymbol> {
         let mut found = std::mem::take(&mut self.found);
         // Stable: equal scores stay by file and in text order.

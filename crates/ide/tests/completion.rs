@@ -51,7 +51,7 @@ fn allowed(beginning: &str) -> BTreeSet<&'static str> {
     allowed
 }
 
-/// Whether a text has no error except that it is incomplete.
+/// Returns whether a text has no error except that it is incomplete.
 fn is_beginning(text: &str) -> bool {
     let pieces = parse(text);
     let last = pieces.len() - 1;
@@ -143,7 +143,7 @@ fn the_words_offered_are_those_that_fit() {
     }
 }
 
-/// Whether completion can offer a token: a keyword, a brace, or a declared name.
+/// Returns whether completion can offer a token: a keyword, a brace, or a declared name.
 fn can_be_offered(database: &Database, file: FileId, token: TokenKind, span: Span) -> bool {
     if token == TokenKind::Comma || token.is_number() || token == TokenKind::String {
         return false;

@@ -14,7 +14,7 @@ const GRAMMAR: &str = include_str!("../../../grammar/pydslrep.ebnf");
 const START: &str = "<!-- from the code: ";
 const END: &str = "<!-- end -->";
 
-/// What belongs between the comments with this name: a keyword, `keywords` or `grammar`.
+/// Returns the text between the comments with this name: a keyword, `keywords` or `grammar`.
 fn generated(name: &str) -> String {
     match name {
         "grammar" => format!("```ebnf\n{GRAMMAR}```"),

@@ -26,7 +26,7 @@ pub enum WriteError {
     },
     /// The disk says no.
     Unwritten {
-        /// What was to be written.
+        /// The file or folder to write.
         path: PathBuf,
         /// The disk's reason.
         error: io::Error,
@@ -38,7 +38,7 @@ impl WriteError {
         Self::Unwritten { path: path.to_owned(), error }
     }
 
-    /// What to do about it; `None` if the disk's reason says enough.
+    /// Returns advice; `None` if the disk's reason says enough.
     pub fn help(&self) -> Option<String> {
         match self {
             Self::Foreign(_, Kind::Script) => {

@@ -8,7 +8,7 @@ use crate::WriteError;
 use crate::kind::Kind;
 use crate::place::free_place;
 
-/// What the name of such a file ends with; the scripts' own traces have the same ending (`python/pydslrep_runtime/outputs.py`).
+/// The suffix of such a file; the scripts' own traces have the same one (`python/pydslrep_runtime/outputs.py`).
 const ENDING: &str = ".partial";
 
 /// A file that is called `NAME.partial` until it is finished. If its process is killed, it stays under that name.

@@ -18,10 +18,10 @@ const LIMIT: Duration = Duration::from_secs(3);
 /// More than any answer, bytes.
 const MAX_ANSWER: u64 = 1 << 16;
 
-/// Whether the Python that runs the user's scripts has the package installed: that of the active virtual environment,
-/// else the first one on the `PATH`. Takes some 50 ms, and never longer than [`LIMIT`] for each of three.
+/// Returns whether the Python that runs the user's scripts has the package installed: that of the active virtual
+/// environment, else the first one on the `PATH`. Takes some 50 ms, and never longer than [`LIMIT`] for each of three.
 ///
-/// Never a Python that a project brings along: whoever opens a folder has not decided to run what is in it.
+/// Never a Python from a project's own folder: a user who opens a folder has not decided to run programs in it.
 pub fn has_runtime() -> bool {
     let mut found = interpreters().into_iter().filter_map(|python| ask(Command::new(python)));
     // The first one that answers.
@@ -54,12 +54,12 @@ fn ask(mut python: Command) -> Option<bool> {
 
 fn answer(child: &mut Child) -> Option<String> {
     let mut stdout = child.stdout.take()?.take(MAX_ANSWER);
-    let (tell, told) = channel();
+    let (sender, receiver) = channel();
     thread::spawn(move || {
         let mut bytes = Vec::new();
-        // What was read before an error is no answer, and neither is nothing.
+        // Text read before an error is not an answer, and neither is an empty one.
         let _ = stdout.read_to_end(&mut bytes);
-        let _ = tell.send(String::from_utf8_lossy(&bytes).into_owned());
+        let _ = sender.send(String::from_utf8_lossy(&bytes).into_owned());
     });
-    told.recv_timeout(LIMIT).ok()
+    receiver.recv_timeout(LIMIT).ok()
 }

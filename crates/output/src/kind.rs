@@ -1,4 +1,4 @@
-//! What files this program writes, and how each is recognised: by its content, since a name says nothing.
+//! The kinds of files that this program writes. Each is recognised by its content, since a name says nothing.
 
 use std::path::Path;
 
@@ -7,26 +7,26 @@ use pydslrep_script::{Origin, origin};
 use pydslrep_workspace::ReadError;
 use serde_json::Value;
 
-/// More than any script or map, bytes.
+/// The maximum size of a script or a map, bytes.
 const MAX_BYTES: u64 = 64 << 20;
 
-/// More than a line of a trace, and than what is before the mark of a picture, bytes.
+/// The bytes read from the start: more than a line of a trace, and more than a picture has before its mark.
 const START: u64 = 64 << 10;
 
-/// What pictures say of themselves (`picture/src/lib.rs`).
+/// The mark of pictures (`picture/src/lib.rs`).
 const PICTURE_MARK: &str = "Drawn by PyDSLRep";
 
-/// How bags begin, and what ours say of themselves right after it (`bag/src/lib.rs`).
+/// The first bytes of bags, and the mark of ours right after them (`bag/src/lib.rs`).
 const BAG_MAGIC: &[u8] = b"\x89MCAP0\r\n";
 const BAG_LIBRARY: &[u8] = b"PyDSLRep";
 
-/// Where the library of a bag is at the latest: a record's head, a profile and the lengths of both are in front of it.
+/// The bytes of a bag up to its library, at most: a record's head, a profile and the lengths of both come before.
 const BAG_HEAD: usize = 128;
 
-/// How worlds begin (`scene/src/mjcf/mod.rs`).
+/// The first bytes of worlds (`scene/src/mjcf/mod.rs`).
 const WORLD_MARK: &[u8] = b"<!-- A world for MuJoCo, written by PyDSLRep -->";
 
-/// What a file that this program writes is.
+/// The kind of a file that this program writes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// A script.
@@ -35,13 +35,13 @@ pub enum Kind {
     Trace,
     /// The steps of a run, as MCAP.
     Bag,
-    /// What robots explored, as JSON.
+    /// The map made by exploring robots, as JSON.
     Map,
     /// The result of a run, as JSON.
     Figures,
     /// A picture, as SVG or PNG.
     Picture,
-    /// What happens in a run, as JSON lines.
+    /// The events of a run, as JSON lines.
     Events,
     /// A world for `MuJoCo`, as MJCF.
     World,
@@ -62,7 +62,7 @@ impl Kind {
         }
     }
 
-    /// Whether a file is of this kind, and as this program wrote it.
+    /// Returns whether a file is of this kind, and as this program wrote it.
     pub(crate) fn inspect(self, path: &Path) -> Result<Origin, ReadError> {
         let content = match self {
             Self::Trace | Self::Bag | Self::Picture | Self::Events | Self::World => read_start(path, START)?,

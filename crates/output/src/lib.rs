@@ -1,4 +1,4 @@
-//! Writes what is generated: scripts, next to them `pydslrep_runtime`, the Python package that they import, and the results
+//! Writes generated files: scripts, next to them `pydslrep_runtime`, the Python package that they import, and the results
 //! of runs.
 //!
 //! Knows files, the user's Python, and the files of the package. Must never know programs or an editor's protocol, or

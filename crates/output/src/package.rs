@@ -6,10 +6,10 @@ use pydslrep_script::runtime::{File, VERSION, files};
 use pydslrep_script::sha256;
 use serde::{Deserialize, Serialize};
 
-/// The file in the package that tells what was written.
+/// The file in the package with the record of what was written.
 pub(crate) const RECORD: &str = "_written.json";
 
-/// What was written into a folder, so that changes by others can be told from an older version.
+/// The record of the files written into a folder, which distinguishes changes by others from an older version.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Record {
     /// The package's version.
@@ -36,7 +36,7 @@ impl Record {
         serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
     }
 
-    /// Tells packages apart, also of the same version.
+    /// Distinguishes packages, also of the same version.
     pub(crate) fn fingerprint(&self) -> String {
         sha256(self.to_json().as_bytes())
     }

@@ -12,16 +12,16 @@ use crate::WriteError;
 use crate::kind::Kind;
 use crate::whole::{folder_of, try_folder};
 
-/// What is in the place of an output.
+/// The state of an output's location.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Found {
-    /// Nothing, or what this program made.
+    /// Nothing, or a file that this program made.
     Free,
     /// A script that its user changed.
     Changed,
 }
 
-/// Where an output goes, which is not its path if that is a link, and what is there.
+/// Returns the location of an output, which is not its path if that is a link, and the state of it.
 ///
 /// # Errors
 /// If a file is there that this program did not make, or the path is a link out of its folder.
@@ -160,7 +160,7 @@ mod tests {
             ("in", 1, true),
             ("in/new", 2, true),
             ("new", 1, true),
-            // Whoever names the folder on the command line may mean what is elsewhere.
+            // A user who names the folder on the command line may mean one that is elsewhere.
             ("out", 0, true),
         ] {
             assert_eq!(check_inside(&folder(name), depth).is_ok(), is_inside, "{name}");

@@ -16,16 +16,16 @@ use crate::whole::NewFolder;
 /// A larger file is not one of the package, and not kept with it, bytes.
 const MAX_BYTES: u64 = 64 << 20;
 
-/// More files than this are no package of ours.
+/// A folder with more files is not our package.
 const MAX_FILES: usize = 10_000;
 
 /// More processes than this rarely write the same package at the same moment.
 const MAX_ATTEMPTS: usize = 16;
 
-/// What Python keeps in packages.
+/// The folders of Python's caches in packages.
 const CACHES: &str = "__pycache__";
 
-/// What became of the package's folder.
+/// The result for the package's folder.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum RuntimeFolder {
     /// It was missing and is written.
@@ -50,7 +50,7 @@ pub enum RuntimeFolder {
 pub struct Kept {
     /// The folder.
     path: PathBuf,
-    /// The changed file, as a path in the folder; `None` if nothing tells what was written.
+    /// The changed file, as a path in the folder; `None` if there is no record of what was written.
     changed: Option<String>,
 }
 
@@ -65,7 +65,7 @@ impl fmt::Display for Kept {
 }
 
 impl Kept {
-    /// What to do about it.
+    /// Returns advice.
     pub fn help(&self) -> String {
         format!(
             "delete it to have version {VERSION} written, or set `write-runtime = false` in pydslrep.toml to keep it"
@@ -144,12 +144,12 @@ pub fn provide_runtime(cache: &Path) -> Result<PathBuf, WriteError> {
     Ok(folder)
 }
 
-/// What is in the place of the package's folder.
+/// The state of the package's folder.
 enum Found {
     Nothing,
     /// This version, unchanged.
     Current,
-    /// What some version of ours wrote, perhaps with other files, and perhaps not all of it.
+    /// Files by some version of ours, perhaps with others, and perhaps not all of them.
     Ours {
         version: String,
         /// Files that somebody added.
@@ -191,7 +191,7 @@ fn inspect(path: &Path, current: &Record) -> io::Result<Found> {
     Ok(Found::Ours { version: record.version, added })
 }
 
-/// Whether a file has the content with this hash.
+/// Returns whether a file has the content with this hash.
 fn has(path: &Path, name: &str, hash: &str) -> bool {
     read(path, name).is_ok_and(|content| sha256(&content) == *hash)
 }
@@ -230,7 +230,7 @@ fn list(path: &Path, inside: &str, files: &mut Vec<Entry>) -> io::Result<()> {
 enum Place<'a> {
     /// There is nothing.
     Empty,
-    /// There is a copy to replace, with files of somebody's own to keep.
+    /// There is a copy to replace, with files that a user added and that are kept.
     Taken { added: &'a [String] },
 }
 
@@ -252,7 +252,7 @@ fn put(path: &Path, current: &Record, place: &Place<'_>) -> io::Result<()> {
     }
 }
 
-/// Tries again what failed because somebody else wrote the same package: each time, another one has got further.
+/// Repeats an attempt that failed because another process wrote the same package: each time, one of them completes.
 fn beside_others<T>(mut attempt: impl FnMut() -> io::Result<T>) -> io::Result<T> {
     use io::ErrorKind::{AlreadyExists, DirectoryNotEmpty, NotFound};
     for _ in 1..MAX_ATTEMPTS {

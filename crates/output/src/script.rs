@@ -10,7 +10,7 @@ use crate::kind::Kind;
 use crate::place::{Found, look};
 use crate::whole::{folder_of, write_file};
 
-/// What becomes of a script that its user changed.
+/// The treatment of a script that its user changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Changed {
     /// It stays.

@@ -12,7 +12,7 @@ use tempfile::{Builder, TempDir};
 /// The file in a temporary folder that its owner holds a lock on.
 pub(crate) const LOCK: &str = ".pydslrep-lock";
 
-/// How the names of ours in the system's temporary folder begin.
+/// The prefix of our names in the system's temporary folder.
 const PREFIX: &str = "pydslrep-";
 
 /// A folder that is deleted in the end; if this process is killed, by the next one.
@@ -74,7 +74,7 @@ impl TemporaryFolder {
 impl Drop for TemporaryFolder {
     fn drop(&mut self) {
         if !self.is_kept {
-            // What cannot be removed now is tried once more with the folder.
+            // Files that cannot be removed now are tried once more with the folder.
             let _ = remove_content(self.path());
         }
     }
@@ -93,7 +93,7 @@ fn remove_content(folder: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// Removes a temporary folder that nobody holds a lock on. Failures are left to whoever comes next.
+/// Removes a temporary folder that nobody holds a lock on. After a failure the next process tries again.
 pub(crate) fn remove_abandoned(folder: &Path) {
     let lock = folder.join(LOCK);
     if let Some(_held) = is_abandoned(&lock) {
@@ -103,7 +103,7 @@ pub(crate) fn remove_abandoned(folder: &Path) {
     }
 }
 
-/// Removes the folders of killed processes; others, whoever made them, have no lock file of ours.
+/// Removes the folders of killed processes; folders of other programs have no lock file of ours.
 fn remove_leftovers(parent: &Path) {
     let Ok(entries) = fs::read_dir(parent) else { return };
     let ours = entries.flatten().filter(|entry| entry.file_name().to_string_lossy().starts_with(PREFIX));

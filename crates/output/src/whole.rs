@@ -1,6 +1,6 @@
 //! Files and folders that appear whole or not at all: written under a temporary name, then renamed.
 //!
-//! Whoever writes holds a lock on what is temporary, so that what a killed process left can be told from what is in use.
+//! A writer holds a lock on its temporary files, which distinguishes them from those of killed processes.
 
 use std::collections::HashSet;
 use std::fs::{self, File};
@@ -12,7 +12,7 @@ use tempfile::{Builder, NamedTempFile};
 
 use crate::temporary::{TemporaryFolder, is_abandoned, remove_abandoned};
 
-/// How temporary names begin; hidden on most systems.
+/// The prefix of temporary names, which hides them on most systems.
 pub(crate) const PREFIX: &str = ".pydslrep-";
 
 /// Writes a file, or replaces its content; permissions of and links to an existing one stay. At any moment it has the old
@@ -58,7 +58,7 @@ pub(crate) fn try_folder(path: &Path) -> io::Result<()> {
     temporary_file(folder_of(path)).map(drop)
 }
 
-/// Removes what killed processes left in a folder; looks once at each.
+/// Removes the leftovers of killed processes in a folder; looks at each folder once.
 fn remove_leftovers(folder: &Path) {
     static SEEN: LazyLock<Mutex<HashSet<PathBuf>>> = LazyLock::new(Mutex::default);
     let is_new = SEEN.lock().unwrap_or_else(PoisonError::into_inner).insert(folder.to_owned());
@@ -70,7 +70,7 @@ fn remove_leftovers(folder: &Path) {
     }
 }
 
-/// Removes a temporary file or folder that nobody holds a lock on. Failures are left to whoever comes next.
+/// Removes a temporary file or folder that nobody holds a lock on. After a failure the next process tries again.
 fn remove_leftover(path: &Path) {
     if path.is_dir() {
         remove_abandoned(path);

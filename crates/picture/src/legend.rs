@@ -17,7 +17,7 @@ pub(crate) const WIDTH: f64 = 252.0;
 
 const KEY_LINE: f64 = 22.0;
 const ENTRY_HEIGHT: f64 = 66.0;
-const LONGEST_NAME: usize = 24;
+const MAX_NAME: usize = 24;
 
 /// The kind of picture that the legend explains.
 #[derive(Debug, Clone, Copy)]
@@ -63,8 +63,7 @@ fn entry(route: &Route, colour: &str, left: f64, top: f64) -> Group {
         .set("height", 12)
         .set("rx", 3)
         .set("fill", colour);
-    let name =
-        text(&shorten(&route.name, LONGEST_NAME), left + 20.0, top + 13.0, 14).set("font-weight", "bold");
+    let name = text(&shorten(&route.name, MAX_NAME), left + 20.0, top + 13.0, 14).set("font-weight", "bold");
     let first = text(&end_text(route), left + 20.0, top + 31.0, 12).set("fill", QUIET);
     let second = text(&error_text(route), left + 20.0, top + 47.0, 12);
     Group::new().add(swatch).add(name).add(first).add(second)
@@ -163,8 +162,8 @@ mod tests {
     #[test]
     fn numbers_and_names_are_readable() {
         assert_eq!((fixed(-0.0001, 3), fixed(-1.5, 1)), ("0.000".to_owned(), "−1.5".to_owned()));
-        let long = shorten("a_name_that_is_far_too_long_for_the_legend", LONGEST_NAME);
-        assert!(long.chars().count() == LONGEST_NAME && long.ends_with('…'));
+        let long = shorten("a_name_that_is_far_too_long_for_the_legend", MAX_NAME);
+        assert!(long.chars().count() == MAX_NAME && long.ends_with('…'));
     }
 
     #[test]

@@ -20,8 +20,7 @@ mod testing;
 mod time_marks;
 mod view;
 
-/// What every picture says of itself, in a comment of an SVG and in the text of a PNG: programs tell their pictures from
-/// other ones by it.
+/// The mark of every picture, in a comment of an SVG and in the text of a PNG: programs recognise their pictures by it.
 pub const MARK: &str = "Drawn by PyDSLRep";
 
 pub use raster::{RenderError, png};

@@ -177,7 +177,7 @@ fn obstacle(view: &View, obstacle: &Obstacle, clock: &Clock) -> Group {
         .add(drawn)
 }
 
-/// How far an obstacle is from where it starts, at each change of its velocity: pixels.
+/// Returns the offset of an obstacle from its start at each change of its velocity, in pixels.
 fn obstacle_frames(view: &View, obstacle: &Obstacle, clock: &Clock) -> Vec<Frame> {
     let Some(trajectory) = &obstacle.trajectory else { return Vec::new() };
     let start = view.place(obstacle.pose.x, obstacle.pose.y);

@@ -77,8 +77,8 @@ pub(crate) fn planned(view: &View, route: &Route, colour: &str) -> Group {
     Group::new().add(dashed(view, &route.planned, colour, DASHES))
 }
 
-/// What may be driven from the end of the planned line on, and the outline of the body where that ends: some ways are
-/// shorter than the body.
+/// Draws the ways that may be driven from the end of the planned line, and the outline of the body at the end of each:
+/// some ways are shorter than the body.
 pub(crate) fn ways(view: &View, route: &Route, colour: &str) -> Group {
     route.open_ways().fold(Group::new(), |group, way| {
         let group = group.add(dashed(view, way, colour, SHORT_DASHES));

@@ -26,7 +26,7 @@ pub struct Route {
     pub body: Body,
     /// The planned poses in order, the start first; see [`pydslrep_kinematics::RobotPath::sample`].
     pub planned: Vec<TimedPose>,
-    /// Whether the plan continues after its last pose with an action that cannot be planned.
+    /// True if the plan continues after its last pose with an action that cannot be planned.
     pub unknown_after: bool,
     /// The ways that the robot may take there, as far as they have a bound; each begins where the plan ends.
     pub possible: Vec<Vec<TimedPose>>,
@@ -52,7 +52,7 @@ impl Route {
     }
 }
 
-/// Whether a pose is finite.
+/// Returns whether a pose is finite.
 pub(crate) fn is_drawable(TimedPose { time, pose }: &TimedPose) -> bool {
     time.is_none_or(f64::is_finite) && pose.x.is_finite() && pose.y.is_finite() && pose.theta.is_finite()
 }

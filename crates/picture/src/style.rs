@@ -18,7 +18,7 @@ pub(crate) const FONT: &str = "'Helvetica Neue', Arial, 'Liberation Sans', 'Deja
 /// Dash and gap of planned paths, pixels.
 pub(crate) const DASHES: &str = "6 4";
 
-/// Dash and gap of what may be driven where plans end, pixels: shorter dashes, so that nobody takes it for planned.
+/// Dash and gap of what may be driven where plans end, pixels: shorter, to differ from planned paths.
 pub(crate) const SHORT_DASHES: &str = "2 4";
 
 /// Dash and gap of the paths of obstacles, pixels.

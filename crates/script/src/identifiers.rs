@@ -1,4 +1,4 @@
-//! What robots, movements and the environment are called in a script: by their names where these are free identifiers.
+//! The identifiers of robots, movements and the environment in a script: their names, if these are free identifiers.
 
 use std::collections::{BTreeSet, HashSet};
 
@@ -13,13 +13,13 @@ pub(crate) fn imports() -> Vec<&'static str> {
     names
 }
 
-/// What makes a condition: no sensor detects anything.
+/// The function for a condition that no sensor detects anything.
 pub(crate) const CLEAR: &str = "clear";
 
-/// What makes a condition: a sensor detects something.
+/// The function for a condition that a sensor detects something.
 pub(crate) const DETECTS: &str = "detects";
 
-/// What the conditions of an environment are made with.
+/// Returns the functions that an environment's conditions call.
 pub(crate) fn conditions(environment: &Environment) -> BTreeSet<&'static str> {
     let actions = environment.movements.iter().flat_map(|movement| nested(&movement.actions));
     let conditions = actions.flat_map(Action::conditions);
@@ -33,7 +33,7 @@ const PYTHON: &str = include_str!("python_names.txt");
 const AMBIGUOUS: [&str; 3] = ["I", "O", "l"];
 
 /// Longer names would exceed the line length.
-const LONGEST: usize = 40;
+const MAX_LENGTH: usize = 40;
 
 /// The identifiers of a script, all different.
 #[derive(Debug)]
@@ -73,9 +73,9 @@ fn choose(name: &str, kind: &str, number: usize, taken: &HashSet<String>) -> Str
     candidates.find(|name| !taken.contains(name)).unwrap_or_default()
 }
 
-/// Whether a name is a short identifier that means nothing special to Python by its form.
+/// Returns whether a name is a short identifier whose form means nothing special to Python.
 fn is_plain(name: &str) -> bool {
-    name.len() <= LONGEST
+    name.len() <= MAX_LENGTH
         && name.starts_with(|c: char| c.is_ascii_alphabetic())
         && name.chars().all(|c| c == '_' || c.is_ascii_alphanumeric())
 }

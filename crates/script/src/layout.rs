@@ -8,7 +8,7 @@ const INDENT: usize = 4;
 /// A Python expression in ASCII.
 #[derive(Debug, Clone)]
 pub(crate) enum Expression {
-    /// What cannot be broken.
+    /// An expression that cannot be broken.
     Atom(String),
     /// A call: a long one has its arguments on one line if they fit there, else each on its own.
     Call { head: String, arguments: Vec<Expression> },
@@ -24,7 +24,7 @@ pub(crate) enum Expression {
     Entry { key: String, items: Vec<Expression> },
 }
 
-/// What is before the call of a statement.
+/// The words before the call of a statement.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Words {
     /// `await`.
@@ -129,7 +129,7 @@ impl Expression {
         }
     }
 
-    /// What opens a group, what is in it, and what closes it.
+    /// Returns the opening of a group, its items, and the closing.
     fn parts(&self) -> Option<(String, &[Expression], &'static str)> {
         match self {
             Self::Atom(_) | Self::Clause { .. } => None,

@@ -23,13 +23,14 @@ pub use page::used_sensors;
 pub use pydslrep_analysis::Target;
 pub use signature::{Origin, origin, sha256};
 
-/// What a script for `CoppeliaSim` needs from PyPI, and one for V-REP does not: a requirements file for pip, every version fixed.
+/// The packages from PyPI that a script for `CoppeliaSim` needs, and one for V-REP does not: a requirements file for
+/// pip, every version fixed.
 pub const REQUIREMENTS: &str = include_str!("../../../python/requirements.txt");
 
-/// What `--odometry` needs in addition.
+/// The packages that `--odometry` needs in addition.
 pub const REQUIREMENTS_SLAM: &str = include_str!("../../../python/requirements-slam.txt");
 
-/// What `--engine mujoco` needs, in place of the first.
+/// The packages that `--engine mujoco` needs, in place of [`REQUIREMENTS`].
 pub const REQUIREMENTS_MUJOCO: &str = include_str!("../../../python/requirements-mujoco.txt");
 
 /// The minimum Python version for scripts; also stated in the documentation.
@@ -38,7 +39,7 @@ pub const OLDEST_PYTHON: (u32, u32) = (3, 11);
 /// V-REP's client for Python: a script for V-REP needs one of these modules beside it or on Python's path.
 pub const VREP_CLIENTS: [&str; 2] = ["sim.py", "vrep.py"];
 
-/// What these in turn need beside them, each its own and one library.
+/// The files that a client needs beside it: its own constants, and one of the libraries.
 pub const VREP_CLIENT_PARTS: [&str; 5] =
     ["simConst.py", "vrepConst.py", "remoteApi.so", "remoteApi.dylib", "remoteApi.dll"];
 

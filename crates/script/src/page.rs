@@ -74,7 +74,8 @@ fn import(environment: &Environment, target: Target, program: &str) -> String {
     format!("{open}{hint}\n{}\n)", names.join("\n"))
 }
 
-/// How to get the runtime, as comments: without the program's name, and with it if a shell takes it as it is.
+/// Returns the advice for a missing runtime, as comments: without the program's name, and with it if a shell takes it
+/// as it is.
 fn hints(target: Target, program: &str) -> [String; 2] {
     let option =
         if target == Target::CoppeliaSim { String::new() } else { format!(" --target {}", target.word()) };
@@ -121,7 +122,7 @@ fn objects(robot: &Robot, sensors: &[&Sensor]) -> Option<Expression> {
     (!items.is_empty()).then_some(Dict { keyword: "objects", items })
 }
 
-/// What a script has to know of a robot's topics.
+/// Returns a robot's topics, as far as scripts need them.
 fn ros2(robot: &Robot) -> Option<Expression> {
     let items: Vec<Expression> = robot
         .ros2
@@ -139,7 +140,7 @@ fn ros2(robot: &Robot) -> Option<Expression> {
     (!items.is_empty()).then_some(Dict { keyword: "ros2", items })
 }
 
-/// Where sensors are, for scripts that no topic tells it and that have to know.
+/// The mounts of sensors, for scripts that need them and get them from no topic.
 fn mounts(robot: &Robot, used: &BTreeSet<usize>, is_explorer: bool) -> Option<Expression> {
     let reads_scan = robot.ros2.iter().any(|(key, _)| *key == "scan");
     if !reads_scan && !is_explorer {

@@ -22,7 +22,7 @@ struct Package;
 pub struct File {
     /// Where it is in the package's folder, with `/` between folders.
     pub path: Cow<'static, str>,
-    /// What is in it.
+    /// Its content.
     pub content: Cow<'static, [u8]>,
 }
 

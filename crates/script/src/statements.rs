@@ -15,9 +15,9 @@ const STEP: usize = 4;
 /// Writes the actions of a movement.
 pub(crate) struct Statements<'a> {
     robot: &'a Robot,
-    /// What the robot is called in the script.
+    /// The identifier of the robot in the script.
     identifier: &'a str,
-    /// What the movements are called in the script.
+    /// The identifiers of the movements in the script.
     movements: &'a [String],
 }
 

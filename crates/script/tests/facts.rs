@@ -1,4 +1,4 @@
-//! What the package that scripts import shares with this program: written from the tables here
+//! The facts that this program shares with the package that scripts import: written from the tables here
 //! (`UPDATE_EXPECT=1 cargo test -p pydslrep-script --test facts`).
 
 use std::fmt::Write;

@@ -1,4 +1,4 @@
-//! How editors start the server: the arguments of `pydslrep-lsp` and of `pydslrep lsp`.
+//! The arguments that start the server: those of `pydslrep-lsp` and of `pydslrep lsp`.
 
 use std::fmt;
 use std::io;
@@ -72,7 +72,7 @@ impl fmt::Display for Unreachable {
 }
 
 impl Unreachable {
-    /// What to do about it.
+    /// Returns the advice for the user.
     pub fn help(&self) -> Option<&'static str> {
         self.port.map(|_| "with --socket the editor listens first, and the server connects to it")
     }

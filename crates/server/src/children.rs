@@ -1,4 +1,4 @@
-//! Child processes of a session: their output, how they are stopped, and what is deleted with them.
+//! Child processes of a session: their output, their end, and the folders deleted with them.
 //!
 //! None outlives its session, however that ends; neither do the pictures they draw.
 
@@ -20,7 +20,7 @@ pub(crate) struct Children {
     /// The program `pydslrep`.
     pub(crate) command: PathBuf,
     running: Vec<(Option<ProgressToken>, Running)>,
-    /// How many were started.
+    /// The number of children started.
     count: u64,
     /// Where they draw; deleted with the session.
     pictures: Option<TemporaryFolder>,
@@ -52,7 +52,7 @@ impl Children {
         Ok(started)
     }
 
-    /// How many were started.
+    /// Returns the number of children started.
     pub(crate) fn count(&self) -> u64 {
         self.count
     }
@@ -95,7 +95,7 @@ pub(crate) struct Running {
     folder: Arc<Path>,
 }
 
-/// What a child process does.
+/// An event of a child process.
 #[derive(Debug)]
 pub(crate) enum ChildEvent {
     /// It printed a line on standard output; the end of the line is part of it.
@@ -175,7 +175,7 @@ fn follow(
     let _ = sender.unbounded_send(ChildEvent::Ended(status.ok().and_then(|status| status.code())));
 }
 
-/// Passes on the lines of a stream; what comes before a failure is still worth showing.
+/// Passes on the lines of a stream; those before a failure are still worth showing.
 fn pass_on(
     stream: Option<impl Read>,
     sender: &UnboundedSender<ChildEvent>,

@@ -20,24 +20,24 @@ pub(crate) struct ChosenEnvironment {
 /// A planned path that the client or a page has.
 #[derive(Debug)]
 pub(crate) struct Watched {
-    /// Who has it.
+    /// The audience that has it.
     pub(crate) audience: Audience,
     /// Whose path.
     pub(crate) which: ChosenEnvironment,
-    /// What the environment was made of, where it was without errors.
+    /// The fingerprint of the environment; `None` if it had errors.
     pub(crate) fingerprint: Option<Fingerprint>,
-    /// What was sent.
+    /// The version that was sent.
     pub(crate) sent: Sent,
 }
 
 impl Watched {
-    /// Whether it is the path of an environment that somebody has.
+    /// Returns whether it is the path of this environment for this audience.
     pub(crate) fn is(&self, which: &ChosenEnvironment, audience: Audience) -> bool {
         self.audience == audience && self.which == *which
     }
 }
 
-/// What its audience has of a path.
+/// The version of a path that its audience has.
 #[derive(Debug)]
 pub(crate) enum Sent {
     /// This one.

@@ -1,4 +1,4 @@
-//! What the client can do.
+//! The features of the client.
 
 use tower_lsp::ls_types::{
     ClientCapabilities, DiagnosticTag, GotoCapability, MarkupKind, ResourceOperationKind,
@@ -21,7 +21,7 @@ pub(crate) struct ClientFeatures {
     pub(crate) pull_diagnostics: bool,
     /// It shows related locations of a diagnostic; otherwise they are part of the message.
     pub(crate) related_information: bool,
-    /// How it can render a diagnostic's text: as unnecessary, or deprecated.
+    /// The renderings of a diagnostic's text that it supports: unnecessary, deprecated.
     pub(crate) diagnostic_tags: Vec<DiagnosticTag>,
     /// It links a diagnostic's code to its page.
     pub(crate) code_description: bool,

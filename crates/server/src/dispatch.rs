@@ -37,10 +37,11 @@ const NOT_INITIALIZED: ErrorCode = ErrorCode::ServerError(-32002);
 /// The protocol's code for answers about a text that has changed meanwhile.
 const CONTENT_MODIFIED: ErrorCode = ErrorCode::ServerError(-32801);
 
-/// Writes down what the server can do because of a row.
+/// Adds the capabilities that a row gives the server.
 pub(crate) type Announce = fn(&mut ServerCapabilities, &ClientFeatures);
 
-/// What a message leads to: an answer, or nothing. It runs up to its first `.await` before the next message is handled.
+/// The result of handling a message: an answer, or nothing. It runs up to its first `.await` before the next message is
+/// handled.
 pub(crate) type Reply = Either<Ready<Outcome>, BoxFuture<'static, Outcome>>;
 
 /// The message to send back, if there is one; the error is the framework's, for calls after `exit`.
@@ -60,7 +61,7 @@ impl fmt::Debug for Table {
 }
 
 struct Row {
-    /// Whether it is a request, which has an id and is answered.
+    /// True for a request, which has an id and is answered.
     is_request: bool,
     /// When it may come.
     stages: &'static [Stage],
@@ -78,8 +79,8 @@ type RequestHandler = Box<dyn Fn(&Server, Id, Option<Value>) -> Reply + Send + S
 
 type NotificationHandler = Box<dyn Fn(&Server, Option<Value>) -> Reply + Send + Sync>;
 
-/// How rows are written. A handler's type says whether it changes the state or only reads it, the name of the method
-/// where it runs.
+/// The methods that add rows. A handler's type says whether it changes the state or only reads it, the name of the
+/// method where it runs.
 impl Table {
     /// A request that reads a place or little more: on the loop.
     pub(crate) fn read<R, A>(&mut self, handler: fn(&State, &R::Params) -> A, announce: Announce)
@@ -163,7 +164,7 @@ impl Table {
             let Some(key) = is_long(&state, &params) else {
                 return answer_now(&id, handler(&mut state, &params).into_result());
             };
-            let version = state.prepare_to_lend();
+            let version = state.prepare_to_borrow();
             drop(state);
             answer_later(server, &id, |token| {
                 let (id, server) = (id.clone(), server.clone());
@@ -296,7 +297,7 @@ impl Table {
         debug_assert!(before.is_none(), "`{method}` has two rows");
     }
 
-    /// What the server can do, for this client.
+    /// Returns the capabilities of the server for this client.
     pub(crate) fn capabilities(&self, client: &ClientFeatures) -> ServerCapabilities {
         let mut capabilities = ServerCapabilities::default();
         for announce in &self.announcements {
@@ -345,7 +346,7 @@ fn read_params<P: DeserializeOwned>(params: Option<Value>) -> Result<P> {
         .map_err(|error| Error::invalid_params(error.to_string()))
 }
 
-/// What a handler returns.
+/// The return type of a handler.
 pub(crate) trait Answer<T> {
     /// The answer, or the error to answer with.
     fn into_result(self) -> Result<T>;
@@ -375,7 +376,7 @@ fn answer_now(id: &Id, answer: Result<impl WriteJson>) -> Reply {
     Either::Left(ready(Ok(Some(body))))
 }
 
-/// What `start` ends with, unless the client cancels the request before.
+/// Answers with the result of `start`, unless the client cancels the request before.
 fn answer_later<F>(server: &Server, id: &Id, start: impl FnOnce(CancellationToken) -> F) -> Reply
 where
     F: Future<Output = Result<Body>> + Send + 'static,
@@ -485,7 +486,7 @@ mod tests {
             });
             let mut held = Self { session, work, sent, left: Vec::new() };
             let capabilities = json!({ "textDocument": { "diagnostic": {} } });
-            // What forwards the server's own requests never ends.
+            // The task that forwards the server's own requests never ends.
             held.work.try_iter().for_each(drop);
             held.send(
                 &json!({ "id": 0, "method": "initialize", "params": { "capabilities": capabilities } }),
@@ -606,7 +607,7 @@ mod tests {
             held.request(2, method, &whole());
             held.change(&format!("wheel a{number} with radius 4\n").repeat(SHORT / 10));
             held.request(3, method, &whole());
-            // What was published in between has changed nothing.
+            // Messages published in between have changed nothing.
             held.session.flush_diagnostics();
             held.work();
             assert_eq!(held.answers(), [(json!(2), Some(-32801)), (json!(3), None)], "{method}");

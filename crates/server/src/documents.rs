@@ -1,4 +1,4 @@
-//! Documents as the client knows them: their addresses, and what the client has of each.
+//! Documents as the client knows them: their addresses, and the client's state of each.
 
 use std::str::FromStr;
 use std::sync::{Arc, OnceLock};
@@ -14,31 +14,31 @@ use tower_lsp::ls_types::{Diagnostic, InitializeParams, TextDocumentContentChang
 
 use crate::positions::{self, Encoding};
 
-/// Whether files are on a disk, and only those are files.
+/// True if files are on a disk; otherwise every address with a path is a file.
 const HAS_DISK: bool = cfg!(feature = "process");
 
-/// What a path in an address is written with.
+/// The characters that are escaped in the path of an address: all but the unreserved ones.
 const UNRESERVED: &AsciiSet =
     &NON_ALPHANUMERIC.remove(b'-').remove(b'.').remove(b'_').remove(b'~').remove(b'/');
 
-/// A document of the workspace, and what the client has of it.
+/// A document of the workspace, with the client's state of it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Document<'a> {
     /// Its key in the workspace.
     pub(crate) key: &'a str,
-    /// What it is.
+    /// Its kind.
     pub(crate) kind: DocumentKind,
     /// Its text.
     pub(crate) text: &'a Rope,
     /// A program's number in the database; `None` if it could not be analysed.
     pub(crate) file: Option<FileId>,
-    /// What is set for it.
+    /// Its settings.
     pub(crate) settings: &'a Settings,
     client: Option<&'a ClientDocument>,
 }
 
 impl<'a> Document<'a> {
-    /// A document of the workspace, with what the client has of it.
+    /// Returns a document of the workspace, with the client's state of it.
     pub(crate) fn new(
         document: &'a pydslrep_workspace::Document,
         client: Option<&'a ClientDocument>,
@@ -74,7 +74,7 @@ impl<'a> Document<'a> {
     }
 }
 
-/// What the client has of a document.
+/// The client's state of a document.
 #[derive(Debug, Default)]
 pub(crate) struct ClientDocument {
     /// Its address as the client writes it, if it was opened there.
@@ -83,11 +83,11 @@ pub(crate) struct ClientDocument {
     pub(crate) version: Option<i32>,
     /// See [`Document::opening`].
     pub(crate) opening: u64,
-    /// What was last published about it, if anything.
+    /// The diagnostics last published, if any.
     pub(crate) published: Option<Vec<Diagnostic>>,
     /// Cancelled when the text changes.
     pub(crate) outdated: CancellationToken,
-    /// What was last known of its movements.
+    /// The last known state of its movements.
     pub(crate) movements: KnownMovements,
     /// The lenses the client last got.
     pub(crate) lenses: ShownLenses,
@@ -96,13 +96,13 @@ pub(crate) struct ClientDocument {
 }
 
 impl ClientDocument {
-    /// The same without what is remembered for later requests.
+    /// Returns a copy without the memory for later requests.
     pub(crate) fn without_memory(&self) -> Self {
         let Self { uri, version, opening, .. } = self;
         Self { uri: uri.clone(), version: *version, opening: *opening, ..Self::default() }
     }
 
-    /// Exchanges what is remembered for later requests.
+    /// Exchanges the memory for later requests.
     pub(crate) fn exchange_memory(&mut self, other: &mut Self) {
         std::mem::swap(&mut self.movements, &mut other.movements);
         std::mem::swap(&mut self.lenses, &mut other.lenses);
@@ -114,18 +114,18 @@ impl ClientDocument {
     }
 }
 
-/// What the client has of a document's semantic tokens.
+/// The semantic tokens of a document that the client has.
 #[derive(Debug)]
 pub(crate) struct SentTokens {
     /// The id they were sent under.
     pub(crate) id: String,
     /// The text they are of.
     pub(crate) snapshot: Snapshot,
-    /// How many tokens each entity of it has.
+    /// The number of tokens of each of its entities.
     pub(crate) counts: TokenCounts,
 }
 
-/// How many semantic tokens each entity of a text has; not there before the work is done.
+/// The number of semantic tokens of each entity of a text; empty until the work is done.
 pub(crate) type TokenCounts = Arc<OnceLock<Vec<usize>>>;
 
 /// The address of a document, as the client writes it or, if it was never opened there, that of its path.
@@ -133,7 +133,7 @@ pub(crate) fn address(key: &str, client: Option<&ClientDocument>) -> Option<Uri>
     client.and_then(|client| client.uri.clone()).or_else(|| uri_of(key))
 }
 
-/// What the changes of one message make of a text, one after the other.
+/// Applies the changes of one message one after the other; returns each with the text after it.
 pub(crate) fn text_changes(
     text: &Rope,
     changes: &[TextDocumentContentChangeEvent],

@@ -1,4 +1,4 @@
-//! What robots did in a run, read from its trace and its map.
+//! The paths that robots drove in a run, read from its trace and its map.
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader};
@@ -11,7 +11,7 @@ use serde::Serialize;
 /// Poses closer than this, in metres and radians, are dropped: a picture shows far less.
 const FINENESS: f64 = 0.005;
 
-/// What a robot did, as the protocol has it.
+/// The driven path of a robot, as the protocol has it.
 #[derive(Debug, Serialize)]
 pub(crate) struct DrivenRobot {
     name: String,
@@ -27,7 +27,8 @@ struct Pose {
     theta: f64,
 }
 
-/// What the robots of a run did, in the order of their first appearance in the trace. A missing map is empty.
+/// Returns the driven paths of a run, in the order in which the robots first appear in the trace. A missing map is
+/// empty.
 ///
 /// # Errors
 /// When there is no trace.

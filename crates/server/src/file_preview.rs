@@ -20,7 +20,7 @@ pub struct FilePreview {
     text: String,
     version: i32,
     address: String,
-    /// Runs what outlasts a message.
+    /// Runs tasks that outlast a message.
     _runtime: Runtime,
 }
 
@@ -39,7 +39,7 @@ impl FilePreview {
     pub fn start(program: &Path, text: String, port: u16) -> io::Result<Self> {
         let uri = Uri::from_file_path(program).ok_or_else(|| io::Error::other("its path is not absolute"))?;
         let runtime = Builder::new_multi_thread().worker_threads(1).build()?;
-        // Nobody reads what the session has to say to an editor.
+        // Nothing reads the session's messages to an editor.
         let (sender, _) = mpsc::channel();
         let handle = runtime.handle().clone();
         let mut session = Session::new(Outbox::new(sender), move |unfinished| drop(handle.spawn(unfinished)));
@@ -52,7 +52,7 @@ impl FilePreview {
         Ok(Self { session, uri, text, version: 1, address, _runtime: runtime })
     }
 
-    /// The page's address, which is a secret: whoever knows it sees the path.
+    /// The page's address, a secret: any client that knows it sees the path.
     pub fn address(&self) -> &str {
         &self.address
     }

@@ -3,12 +3,12 @@
 use std::io::{self, BufRead, BufReader, Read};
 
 /// The longest message; a larger `Content-Length` is rejected before anything is allocated for it.
-const LONGEST_BODY: u64 = 256 << 20;
+const MAX_BODY: u64 = 256 << 20;
 
-/// How much of a header line is kept. Its beginning is dropped, which may be the rest of a broken message.
-const LONGEST_LINE: usize = 4096;
+/// The maximum number of bytes kept of a header line. Its beginning is dropped, which may be the rest of a broken message.
+const MAX_LINE: usize = 4096;
 
-/// What was found on the stream.
+/// A unit found on the stream.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) enum Frame {
     /// The bytes of one message.
@@ -17,7 +17,7 @@ pub(crate) enum Frame {
     BadHeader,
 }
 
-/// What the lines before a body say about it.
+/// The header of a body, as read from its lines.
 #[derive(Clone, Copy)]
 enum Header {
     Length(u64),
@@ -36,7 +36,7 @@ impl<R: Read> FrameReader<R> {
         Self { input: BufReader::with_capacity(1 << 16, input), lost: false }
     }
 
-    /// Whether part of another message has already arrived.
+    /// Returns whether part of another message has already arrived.
     pub(crate) fn has_more(&self) -> bool {
         !self.input.buffer().is_empty()
     }
@@ -92,8 +92,8 @@ impl<R: Read> FrameReader<R> {
             let used = newline.map_or(buffer.len(), |at| at + 1);
             line.extend_from_slice(&buffer[..newline.unwrap_or(buffer.len())]);
             self.input.consume(used);
-            if line.len() > LONGEST_LINE {
-                line.drain(..line.len() - LONGEST_LINE);
+            if line.len() > MAX_LINE {
+                line.drain(..line.len() - MAX_LINE);
             }
             if newline.is_some() {
                 if line.last() == Some(&b'\r') {
@@ -113,7 +113,7 @@ fn content_length(line: &[u8], anywhere: bool) -> Option<Header> {
     let at = if anywhere { (0..line.len()).rev().find(|&at| starts(at))? } else { starts(0).then_some(0)? };
     let value = str::from_utf8(&line[at + NAME.len()..]).unwrap_or_default().trim();
     let length = if value.starts_with('+') { None } else { value.parse().ok() };
-    Some(length.filter(|&length| length <= LONGEST_BODY).map_or(Header::Unusable, Header::Length))
+    Some(length.filter(|&length| length <= MAX_BODY).map_or(Header::Unusable, Header::Length))
 }
 
 #[cfg(test)]

@@ -1,14 +1,14 @@
-//! How a session is started.
+//! The parameters of a session.
 
 use std::path::PathBuf;
 
 use pydslrep_config::Config;
 
-/// What the program that starts a session tells it.
+/// The parameters that the program passes to the session it starts.
 #[derive(Debug)]
 pub(crate) struct Launch {
     /// The program that runs environments.
     pub(crate) command: PathBuf,
-    /// What wins over all settings.
+    /// Options that override all settings.
     pub(crate) options: Config,
 }

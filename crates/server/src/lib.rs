@@ -9,7 +9,7 @@
 //! * [`Session`] calls that service. Its one guarantee: every handler runs, in arrival order, up to its first `.await`,
 //!   before the next message is handled. The state is a plain mutex that is never held across an `.await`.
 //! * `message_loop` feeds a session from a stream; `process` finds the stream.
-//! * `web` serves the page of the path preview, `page` has what the page is told, `handlers::preview` connects them.
+//! * `web` serves the page of the path preview, `page` has its notifications, `handlers::preview` connects them.
 //! * `positions` is the only place where lines and columns meet byte offsets.
 //!
 //! With the feature `process` off there is no runtime, no stdio and no socket: a browser feeds a session itself.

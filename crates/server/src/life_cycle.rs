@@ -1,4 +1,4 @@
-//! What the framework calls: the beginning and the end of a session. All other methods are in the
+//! The beginning and the end of a session, which the framework calls. All other methods are in the
 //! [table](crate::handlers::table).
 
 use std::sync::Arc;

@@ -1,4 +1,5 @@
-//! How many bytes of messages wait to be written, so that a client that does not read costs a bounded amount of memory.
+//! The number of bytes of messages that wait to be written: a client that does not read costs a bounded amount of
+//! memory.
 
 use std::future::{Future, poll_fn};
 #[cfg(feature = "process")]
@@ -6,13 +7,14 @@ use std::sync::Condvar;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::task::{Poll, Waker};
 
-/// What waits to be written; clones share it. The default has no limit: it is for whoever takes messages at once.
+/// The bytes that wait to be written; clones share it. The default has no limit, for clients that take messages at
+/// once.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Load(Option<Arc<Shared>>);
 
 #[derive(Debug)]
 struct Shared {
-    /// So many bytes are enough; what is being answered then is added nevertheless.
+    /// The bytes from which on requests wait; answers in progress are added nevertheless.
     limit: usize,
     state: Mutex<State>,
     #[cfg(feature = "process")]
@@ -22,9 +24,9 @@ struct Shared {
 #[derive(Debug, Default)]
 struct State {
     waiting_bytes: usize,
-    /// The most there ever were.
-    most_bytes: usize,
-    /// Requests that go on when there is room.
+    /// The largest number of them so far.
+    peak_bytes: usize,
+    /// Requests that continue when there is room.
     wakers: Vec<Waker>,
     /// Nobody reads any more, or the session is about to end: nothing waits for room.
     is_over: bool,
@@ -40,7 +42,7 @@ impl Load {
     pub(crate) fn add(&self, bytes: usize) {
         if let Some((_, mut state)) = self.lock() {
             state.waiting_bytes += bytes;
-            state.most_bytes = state.most_bytes.max(state.waiting_bytes);
+            state.peak_bytes = state.peak_bytes.max(state.waiting_bytes);
         }
     }
 
@@ -65,12 +67,12 @@ impl Load {
         Self(Some(Arc::new(shared)))
     }
 
-    /// Whether there is no room for another answer.
+    /// Returns whether there is no room for another answer.
     pub(crate) fn is_full(&self) -> bool {
         self.lock().is_some_and(|(shared, state)| shared.is_full(&state))
     }
 
-    /// Whether nobody reads any more.
+    /// Returns whether nobody reads any more.
     pub(crate) fn is_over(&self) -> bool {
         self.lock().is_some_and(|(_, state)| state.is_over)
     }
@@ -106,10 +108,10 @@ impl Load {
         wakers.into_iter().for_each(Waker::wake);
     }
 
-    /// The most bytes that ever waited.
+    /// Returns the largest number of bytes that have waited.
     #[cfg(test)]
-    pub(crate) fn most_bytes(&self) -> usize {
-        self.lock().map_or(0, |(_, state)| state.most_bytes)
+    pub(crate) fn peak_bytes(&self) -> usize {
+        self.lock().map_or(0, |(_, state)| state.peak_bytes)
     }
 }
 

@@ -17,7 +17,7 @@ pub(crate) const IGNORED: &str = "pydslrep: ignored ";
 /// A message to the client, encoded.
 pub(crate) type Body = Vec<u8>;
 
-/// What a client may send.
+/// A message from the client.
 #[derive(Debug, PartialEq)]
 pub(crate) enum Incoming {
     /// A request, or a notification if it has no id.
@@ -30,7 +30,7 @@ pub(crate) enum Incoming {
 ///
 /// # Errors
 ///
-/// The response that tells the client what was wrong: a parse error for what is not JSON, an invalid request for JSON
+/// The response to an unusable message: a parse error for text that is not JSON, an invalid request for JSON
 /// that is not a message; with the message's id where it has a usable one, else null.
 pub(crate) fn parse(body: &[u8]) -> Result<Incoming, Response> {
     let value = serde_json::from_slice(body)
@@ -66,9 +66,8 @@ pub(crate) fn parse(body: &[u8]) -> Result<Incoming, Response> {
     }
 }
 
-/// An editor's text may hold half a surrogate pair, which no Unicode text can. A replacement character, as long in
-/// UTF-16, keeps document and positions in step, where refusing the message would lose the edit for good. `None` if
-/// there is no such half.
+/// Replaces lone surrogates, which an editor's text may hold but Unicode text cannot; `None` if there are none. The
+/// replacement character is as long in UTF-16, so positions stay right. Refusing the message would lose the edit.
 fn without_lone_surrogates(body: &[u8]) -> Option<Vec<u8>> {
     let escape = |at: usize| -> Option<u16> {
         let digits = body.get(at..)?.strip_prefix(b"\\u")?.get(..4)?;
@@ -122,7 +121,7 @@ pub(crate) fn refuse(id: Id, code: ErrorCode, message: String) -> Response {
     Response::from_error(id, Error { code, message: message.into(), data: None })
 }
 
-/// What can be written as JSON; most of it with serde.
+/// Values that can be written as JSON; most of them with serde.
 pub(crate) trait WriteJson {
     /// Appends its JSON text.
     fn write_json(&self, json: &mut Vec<u8>) -> serde_json::Result<()>;

@@ -22,9 +22,9 @@ use crate::message::Outbox;
 use crate::session::{Ending, Session};
 
 /// So many bytes may wait to be written before no more requests are answered: more than any usual answer.
-const MOST_UNWRITTEN: usize = 16 << 20;
+const MAX_UNWRITTEN: usize = 16 << 20;
 
-/// How long the last messages may take to be written once the session has ended.
+/// The time for writing the last messages once the session has ended.
 const LAST_WORDS: Duration = Duration::from_secs(1);
 
 impl From<Ending> for ExitCode {
@@ -59,7 +59,7 @@ fn serve_with(
     output: impl Write + Send + 'static,
     start: impl FnOnce(Outbox, runtime::Handle) -> Session,
 ) -> io::Result<Ending> {
-    serve_with_load(input, output, &Load::new(MOST_UNWRITTEN), start)
+    serve_with_load(input, output, &Load::new(MAX_UNWRITTEN), start)
 }
 
 /// [`serve_with`] with the most that may wait to be written.
@@ -126,7 +126,7 @@ fn handle(session: &mut Session, frame: Frame) -> Option<Ending> {
     }
 }
 
-/// Whether a message may be `shutdown` or `exit`; those are short.
+/// Returns whether a message may be `shutdown` or `exit`; those are short.
 fn is_end(frame: &Frame) -> bool {
     matches!(frame, Frame::Body(body) if body.len() < 200
         && (contains(body, b"\"shutdown\"") || contains(body, b"\"exit\"")))

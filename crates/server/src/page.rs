@@ -1,4 +1,4 @@
-//! What pages of the path preview are told: where the cursor is, and which paths have changed.
+//! Notifications of the pages of the path preview: the location of the cursor, and paths that have changed.
 
 use std::fmt;
 
@@ -9,7 +9,7 @@ use tower_lsp::ls_types::{Position, TextDocumentIdentifier, TextDocumentPosition
 
 use crate::message::{Body, encode};
 
-/// Who has a path and is notified when it changes.
+/// The receiver of a path, which is notified when it changes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Audience {
     /// The client.
@@ -28,7 +28,7 @@ pub(crate) struct Cursor {
     /// The environment to show; else the one that the cursor is about.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) environment: Option<String>,
-    /// Whether it is where the text was edited.
+    /// True at the location of an edit.
     pub(crate) is_edit: bool,
 }
 

@@ -98,7 +98,7 @@ mod tests {
         let request = pending.register(&id).unwrap();
         let token = request.token.clone();
         let answer = request.run(async {
-            // As another thread does it; what the work returns then is incomplete.
+            // As another thread does it; the result of the work is then incomplete.
             pending.cancel(&id);
             Ok(token.is_cancelled())
         });

@@ -1,4 +1,4 @@
-//! What a read of the whole workspace sees: the state, for one file after the other.
+//! Access to the state for requests that read the whole workspace, one file after the other.
 
 use std::future::{Future, poll_fn};
 use std::mem::replace;
@@ -16,7 +16,7 @@ use crate::work::SHORT;
 #[derive(Debug)]
 pub(crate) struct Reader {
     server: Server,
-    /// How many bytes were read since others had their turn.
+    /// The number of bytes read since other messages had their turn.
     read: usize,
 }
 

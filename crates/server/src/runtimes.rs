@@ -16,14 +16,14 @@ use crate::message::Outbox;
 /// Writes packages, and remembers what the user knows already; clones share it.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Runtimes {
-    /// Whether the user's Python has the package, once it was asked.
+    /// True if the user's Python has the package; empty until it was asked.
     is_installed: Arc<OnceLock<bool>>,
     reported: Arc<Mutex<FxHashSet<String>>>,
 }
 
 impl Runtimes {
-    /// Writes the package into a folder, unless it is there or installed. Whoever awaits the receiver knows that it is
-    /// done. On a thread of its own: the user's Python may take its time to answer.
+    /// Writes the package into a folder, unless it is there or installed. The receiver resolves when it is done.
+    /// Runs on a thread of its own: the user's Python may take its time to answer.
     pub(crate) fn write(&self, folder: PathBuf, outbox: &Outbox) -> oneshot::Receiver<()> {
         let (done, receiver) = oneshot::channel();
         let (own, outbox) = (self.clone(), outbox.clone());

@@ -1,4 +1,4 @@
-//! The server's end of one session: what its handlers share, and what goes on beside the messages.
+//! The server's end of one session: the state that its handlers share, and the tasks beside the messages.
 
 mod indexing;
 
@@ -24,7 +24,7 @@ use crate::state::State;
 #[cfg(feature = "process")]
 use crate::web::WebServer;
 
-/// How far a session is, which decides which messages it takes.
+/// The stage of a session, which decides which messages it takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Stage {
     /// Before `initialize`.
@@ -72,7 +72,7 @@ impl Server {
         }
     }
 
-    /// How far the session is.
+    /// Returns the stage of the session.
     pub(crate) fn stage(&self) -> Stage {
         *self.stage.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -101,21 +101,21 @@ impl Server {
         if state.workspace.version() != version {
             return None;
         }
-        let (mut lent, outdated) = state.lend(key);
+        let (mut borrowed, outdated) = state.borrow(key);
         drop(state);
-        let answer = cancellable(&[outdated, token], || read(&mut lent)).ok();
-        lent.workspace.give_back();
-        self.state().take_back(key, lent);
+        let answer = cancellable(&[outdated, token], || read(&mut borrowed)).ok();
+        borrowed.workspace.release();
+        self.state().release(key, borrowed);
         answer
     }
 
-    /// Reads the state for somebody who is not the client: again whenever it changes meanwhile.
+    /// Reads the state for a page, not the client: again whenever it changes meanwhile.
     #[cfg(feature = "process")]
     pub(crate) fn read_latest<A>(&self, uri: &Uri, read: impl Fn(&mut State) -> A) -> A {
         loop {
             let mut state = self.state();
             let Some(key) = state.if_long(uri) else { return read(&mut state) };
-            let version = state.prepare_to_lend();
+            let version = state.prepare_to_borrow();
             drop(state);
             if let Some(answer) = self.read_beside(&key, version, CancellationToken::default(), &read) {
                 return answer;
@@ -136,7 +136,7 @@ impl Server {
     }
 }
 
-/// What handlers start, and goes on while other messages are handled.
+/// Tasks that handlers start and that continue while other messages are handled.
 impl Server {
     /// Reads the client's settings, where the client can be asked.
     pub(crate) async fn ask_for_settings(&self) {
@@ -206,7 +206,7 @@ impl Server {
         Some(self.client.progress(token, title).begin().await)
     }
 
-    /// Tells clients that pull diagnostics and hints to pull them again: what changed is not a document of theirs.
+    /// Asks clients that pull diagnostics and hints to pull them again: other documents than theirs have changed.
     pub(crate) async fn refresh(&self) {
         if self.state().client.refreshes_diagnostics {
             let _ = self.client.workspace_diagnostic_refresh().await;
@@ -217,9 +217,9 @@ impl Server {
     }
 }
 
-/// What the session calls.
+/// Methods for the session.
 impl Server {
-    /// Sends the client what the messages handled so far have changed.
+    /// Sends the client the changes by the messages handled so far.
     pub(crate) fn flush_diagnostics(&self) {
         let mut state = self.state();
         if diagnostics::publish(&mut state, &self.outbox) {

@@ -27,7 +27,7 @@ use crate::pending::PendingRequests;
 use crate::server::{Server, Stage};
 use crate::state::State;
 
-/// How a session ended.
+/// The way in which a session ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ending {
     /// `shutdown`, then `exit`.
@@ -55,7 +55,7 @@ impl fmt::Debug for Session {
 }
 
 impl Session {
-    /// A session whose messages to the client go to `outbox`. `spawn` runs what outlasts the message that began it.
+    /// A session whose messages to the client go to `outbox`. `spawn` runs tasks that outlast the message that began them.
     pub fn new(outbox: Outbox, spawn: impl Fn(BoxFuture<'static, ()>) + 'static) -> Self {
         Self::with_table(handlers::table(), outbox, Box::new(spawn))
     }
@@ -92,14 +92,14 @@ impl Session {
         Self { service, server, responses, spawn, outbox }
     }
 
-    /// Takes what the program says that starts it.
+    /// Applies the parameters of the program that starts it.
     #[cfg(feature = "process")]
     pub(crate) fn launch(&self, launch: crate::launch::Launch) {
         self.server.children().command = launch.command;
         self.server.state().set_options(launch.options);
     }
 
-    /// What the session's handlers share.
+    /// Returns the server that the session's handlers share.
     #[cfg(feature = "process")]
     pub(crate) fn server(&self) -> &Server {
         &self.server
@@ -149,7 +149,7 @@ impl Session {
         let method = request.method().to_owned();
         let started = catch_unwind(AssertUnwindSafe(|| {
             let mut reply = self.service.call(request);
-            // Whoever runs the rest polls it again, with a waker.
+            // The executor of the rest polls it again, with a waker.
             match reply.poll_unpin(&mut Context::from_waker(Waker::noop())) {
                 Poll::Ready(outcome) => Ok(outcome),
                 Poll::Pending => Err(reply),

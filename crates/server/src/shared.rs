@@ -10,15 +10,16 @@ use std::time::Duration;
 use pydslrep_analysis::CancellationToken;
 use pydslrep_workspace::Workspace;
 
-/// How long a change waits for readers to stop before it copies the workspace, which takes some milliseconds itself.
-const PATIENCE: Duration = Duration::from_millis(20);
+/// The time that a change waits for readers to stop before it copies the workspace, which takes some milliseconds
+/// itself.
+const READER_TIMEOUT: Duration = Duration::from_millis(20);
 
-/// A workspace that can be lent to readers.
+/// A workspace that readers can borrow.
 #[derive(Debug)]
 pub(crate) struct SharedWorkspace {
     workspace: Arc<Workspace>,
     readers: Arc<Readers>,
-    /// How many changes there have been.
+    /// The number of changes.
     changes: u64,
     /// For a reader's own copy: ends the loan.
     loan: Option<Loan>,
@@ -48,31 +49,31 @@ impl SharedWorkspace {
         self.changes
     }
 
-    /// The workspace for a reader, and the token that tells it that the workspace has changed.
-    pub(crate) fn lend(&self) -> (Self, CancellationToken) {
+    /// The workspace for a reader, and the token that is cancelled when the workspace changes.
+    pub(crate) fn borrow(&self) -> (Self, CancellationToken) {
         let token = CancellationToken::default();
         self.readers.lock().push(token.clone());
         let loan = Loan { readers: Arc::clone(&self.readers), token: token.clone() };
-        let lent = Self {
+        let borrowed = Self {
             workspace: Arc::clone(&self.workspace),
             readers: Arc::default(),
             changes: self.changes,
             loan: Some(loan),
         };
-        (lent, token)
+        (borrowed, token)
     }
 
-    /// Ends a reader's turn.
-    pub(crate) fn give_back(&mut self) {
+    /// Ends a reader's loan.
+    pub(crate) fn release(&mut self) {
         if let Some(loan) = self.loan.take() {
-            // The workspace first, so that whoever waits for the end of the loan is its only owner.
+            // The workspace first, so that the thread that waits for the end of the loan is its only owner.
             self.workspace = Arc::new(Workspace::new(self.workspace.files()));
             drop(loan);
         }
     }
 
-    /// For what changes no answer, such as what has been asked about it so far.
-    pub(crate) fn note(&mut self) -> &mut Workspace {
+    /// Returns the workspace for changes that affect no answer, such as the record of what was asked so far.
+    pub(crate) fn untracked_mut(&mut self) -> &mut Workspace {
         if Arc::get_mut(&mut self.workspace).is_none() {
             self.readers.stop();
         }
@@ -91,13 +92,13 @@ impl Deref for SharedWorkspace {
 impl DerefMut for SharedWorkspace {
     fn deref_mut(&mut self) -> &mut Workspace {
         self.changes += 1;
-        self.note()
+        self.untracked_mut()
     }
 }
 
 impl Drop for SharedWorkspace {
     fn drop(&mut self) {
-        self.give_back();
+        self.release();
     }
 }
 
@@ -110,7 +111,7 @@ impl Readers {
     fn stop(&self) {
         let tokens = self.lock();
         tokens.iter().for_each(CancellationToken::cancel);
-        let waited = self.one_has_stopped.wait_timeout_while(tokens, PATIENCE, |left| !left.is_empty());
+        let waited = self.one_has_stopped.wait_timeout_while(tokens, READER_TIMEOUT, |left| !left.is_empty());
         drop(waited);
     }
 }
@@ -134,18 +135,18 @@ mod tests {
     #[test]
     fn a_change_stops_readers_and_does_not_wait_for_those_that_go_on() {
         let mut shared = SharedWorkspace::new(Workspace::new(Arc::new(Disk)));
-        let (lent, token) = shared.lend();
+        let (borrowed, token) = shared.borrow();
         let before = shared.version();
         let reader = thread::spawn(move || {
             while !token.is_cancelled() {
                 thread::yield_now();
             }
-            drop(lent);
+            drop(borrowed);
         });
         shared.open("/a.pyr", Rope::from_str("wheel a"));
         reader.join().unwrap();
         assert_ne!(shared.version(), before);
-        let (stubborn, _) = shared.lend();
+        let (stubborn, _) = shared.borrow();
         shared.open("/b.pyr", Rope::from_str("wheel b"));
         assert!(stubborn.document("/b.pyr").is_none() && shared.document("/b.pyr").is_some());
     }

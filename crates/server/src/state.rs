@@ -1,4 +1,4 @@
-//! What the server knows between two messages.
+//! The server's state between two messages.
 
 use std::sync::Arc;
 
@@ -32,30 +32,30 @@ use crate::shared::SharedWorkspace;
 use crate::typing::{Typing, replacements};
 use crate::work::{FileWork, SHORT, Work};
 
-/// Documents, their analysis, and what the client can do.
+/// Documents, their analysis, and the features of the client.
 #[derive(Debug)]
 pub(crate) struct State {
-    /// What the client can do.
+    /// The features of the client.
     pub(crate) client: ClientFeatures,
     /// The documents that are open in the client, the files around them, and their analysis.
     pub(crate) workspace: SharedWorkspace,
-    /// What wins over the client's settings: how the server was started.
+    /// Options of the server's command line, which override the client's settings.
     options: Config,
     /// The files that the client provides, where there is no disk.
     pub(crate) provided: Option<Arc<MemoryFiles>>,
-    /// What the client has of documents, by their keys.
+    /// The client's state of documents, by their keys.
     pub(crate) clients: FxHashMap<String, ClientDocument>,
-    /// What has changed since diagnostics were last published, as far as the workspace was asked already.
+    /// The changes since diagnostics were last published, as far as they were already taken from the workspace.
     changes: Changes,
     /// Documents that were closed since diagnostics were last published.
     pub(crate) closed: Vec<Uri>,
-    /// How many answers have been given a number so far.
+    /// The number of answers that have got a number.
     pub(crate) answers: u64,
-    /// How many times a document has been opened.
+    /// The number of times that documents have been opened.
     openings: u64,
-    /// How many progress reports have begun; each needs its own token.
+    /// The number of progress reports; each needs its own token.
     pub(crate) progresses: u64,
-    /// Whether the client wants to know what changes cost.
+    /// The trace level; if it is verbose, the client gets the cost of changes.
     pub(crate) trace: TraceValue,
     /// The cost of each change of the last message, if the trace is verbose.
     pub(crate) costs: Vec<EditCounts>,
@@ -63,15 +63,15 @@ pub(crate) struct State {
     pub(crate) waiting: Vec<oneshot::Sender<()>>,
     /// Messages shown so far about scripts that are generated on save.
     pub(crate) reported: FxHashSet<String>,
-    /// Writes what scripts import.
+    /// Writes the package that scripts import.
     pub(crate) runtimes: Runtimes,
     /// Planned paths that the client has.
     pub(crate) watched: Vec<Watched>,
     /// Where the user is typing, if known.
     pub(crate) typing: Option<Typing>,
-    /// What the client must request again although it did not change it.
+    /// The hints and lenses that the client must request again although it did not change them.
     pub(crate) outdated: Outdated,
-    /// How many refreshes have been requested.
+    /// The number of refreshes requested.
     refreshes: u64,
     /// Paths that were driven.
     pub(crate) driven: DrivenPaths,
@@ -79,7 +79,7 @@ pub(crate) struct State {
     pub(crate) pages: Pages,
 }
 
-/// What the client shows that is no longer so.
+/// The outdated items that the client shows.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Outdated {
     /// Inlay hints.
@@ -195,7 +195,7 @@ impl State {
         places.iter().filter_map(statement).collect()
     }
 
-    /// Whether the next word of a statement being typed will settle an error.
+    /// Returns whether the next word of a statement being typed will settle an error.
     pub(crate) fn is_error_unsettled(&self) -> bool {
         let Some(document) = self.typing.as_ref().and_then(|typing| self.document_at(&typing.key)) else {
             return false;
@@ -207,50 +207,50 @@ impl State {
         errors.any(|error| statements.iter().any(|statement| statement.settles(error)))
     }
 
-    /// What has changed in the workspace since this was last asked.
+    /// Returns the changes in the workspace since the last call.
     pub(crate) fn take_changes(&mut self) -> Changes {
         self.note_changes();
         std::mem::take(&mut self.changes)
     }
 
-    /// Has the workspace say what has changed, which stops those who read it: it is asked before they begin.
+    /// Takes the changes of the workspace. That stops its readers, so it happens before they begin.
     fn note_changes(&mut self) {
         if self.workspace.has_changes() {
-            let Changes { all, documents } = self.workspace.note().take_changes();
+            let Changes { all, documents } = self.workspace.untracked_mut().take_changes();
             self.changes.all |= all;
             self.changes.documents.extend(documents);
         }
     }
 
-    /// Prepares for [`Self::lend`] after this message.
-    pub(crate) fn prepare_to_lend(&mut self) -> u64 {
+    /// Prepares for [`Self::borrow`] after this message.
+    pub(crate) fn prepare_to_borrow(&mut self) -> u64 {
         self.note_changes();
         self.workspace.version()
     }
 
-    /// The state as it is now for a request about a document that goes on beside the message loop, and the token that
-    /// tells it that the workspace has changed. It has what is kept for such requests, which [`Self::take_back`] returns.
-    pub(crate) fn lend(&mut self, key: &str) -> (Self, CancellationToken) {
-        let (workspace, token) = self.workspace.lend();
+    /// Returns the current state for a request about a document that continues beside the message loop, and the token that
+    /// is cancelled when the workspace changes. Memory of earlier requests moves to it until [`Self::release`].
+    pub(crate) fn borrow(&mut self, key: &str) -> (Self, CancellationToken) {
+        let (workspace, token) = self.workspace.borrow();
         let mut clients: FxHashMap<String, ClientDocument> =
             self.clients.iter().map(|(key, client)| (key.clone(), client.without_memory())).collect();
-        if let (Some(own), Some(lent)) = (self.clients.get_mut(key), clients.get_mut(key)) {
-            lent.exchange_memory(own);
+        if let (Some(own), Some(borrowed)) = (self.clients.get_mut(key), clients.get_mut(key)) {
+            borrowed.exchange_memory(own);
         }
         let (client, provided) = (self.client.clone(), self.provided.clone());
         let typing = self.typing.clone();
-        let lent = Self { client, workspace, provided, clients, typing, ..Self::default() };
-        (lent, token)
+        let borrowed = Self { client, workspace, provided, clients, typing, ..Self::default() };
+        (borrowed, token)
     }
 
-    /// Takes back what a request was lent, with what it has noted.
-    pub(crate) fn take_back(&mut self, key: &str, mut lent: Self) {
-        if let (Some(own), Some(lent)) = (self.clients.get_mut(key), lent.clients.get_mut(key))
-            && own.opening == lent.opening
+    /// Ends the loan to a request, and keeps what it has remembered.
+    pub(crate) fn release(&mut self, key: &str, mut borrowed: Self) {
+        if let (Some(own), Some(borrowed)) = (self.clients.get_mut(key), borrowed.clients.get_mut(key))
+            && own.opening == borrowed.opening
         {
-            own.exchange_memory(lent);
+            own.exchange_memory(borrowed);
         }
-        for watched in lent.watched.drain(..) {
+        for watched in borrowed.watched.drain(..) {
             self.watched.retain(|other| !other.is(&watched.which, watched.audience));
             self.watched.push(watched);
         }
@@ -282,7 +282,7 @@ impl State {
         self.cursor_is_at(&at.text_document.uri, Range::new(at.position, at.position));
     }
 
-    /// Notes what a request says about the cursor: who has gone on to another line has done with the one before.
+    /// Notes the cursor of a request: a user who has moved to another line has finished the one before.
     pub(crate) fn cursor_is_at(&mut self, uri: &Uri, range: Range) {
         let key = key(uri);
         let (Some(typing), Some(document)) = (&self.typing, self.workspace.document(&key)) else { return };
@@ -293,7 +293,8 @@ impl State {
         }
     }
 
-    /// Whether this is the first request for completion since the text changed at this place; from now on it is not.
+    /// Returns whether this is the first request for completion since the text changed at this place; from now on it is
+    /// not.
     pub(crate) fn is_first_completion_after_typing(&mut self, at: &TextDocumentPositionParams) -> bool {
         let key = key(&at.text_document.uri);
         let Some(document) = self.workspace.document(&key) else { return false };
@@ -305,7 +306,7 @@ impl State {
         self.typing.as_mut().is_some_and(|typing| typing.complete(&key, offset))
     }
 
-    /// Has the client ask again for what is no longer so.
+    /// Asks the client to request outdated hints and lenses again.
     pub(crate) fn tell_outdated(&mut self, outbox: &Outbox) {
         let Outdated { hints, lenses } = std::mem::take(&mut self.outdated);
         if hints && self.client.refreshes_inlay_hints {
@@ -360,14 +361,14 @@ impl State {
         true
     }
 
-    /// Applies the client's settings; returns what is wrong with them.
+    /// Applies the client's settings; returns their problems.
     pub(crate) fn set_client_settings(&mut self, value: &Value) -> Vec<Problem> {
         let (config, problems) = Config::from_json(value);
         self.workspace.set_overrides(self.options.clone().merged_over(config));
         problems
     }
 
-    /// Sets what wins over the client's settings, before there are any.
+    /// Sets the options that override the client's settings, before there are any.
     #[cfg(feature = "process")]
     pub(crate) fn set_options(&mut self, options: Config) {
         self.workspace.set_overrides(options.clone());
@@ -389,7 +390,7 @@ impl State {
         self.document_at(&key(uri))
     }
 
-    /// Whether a program is at an address.
+    /// Returns whether a program is at an address.
     pub(crate) fn is_program(&self, uri: &Uri) -> bool {
         self.document(uri).is_some_and(|document| document.kind == DocumentKind::Program)
     }
@@ -414,7 +415,7 @@ impl State {
         }))
     }
 
-    /// What a position in a document points at.
+    /// Returns the location in a program that a position of the client refers to.
     pub(crate) fn place(&self, at: &TextDocumentPositionParams) -> Option<Place<'_>> {
         let (document, file) = self.analysed(&at.text_document.uri)?;
         Some(Place { document, file, offset: self.offset(document, at.position) })

@@ -11,7 +11,7 @@ use ropey::Rope;
 use tower_lsp::ls_types::{Range, TextDocumentContentChangeEvent};
 
 /// Nobody types with more cursors than this.
-const MOST_CURSORS: usize = 32;
+const MAX_CURSORS: usize = 32;
 
 /// Where the last change was made.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -20,16 +20,16 @@ pub(crate) struct Typing {
     pub(crate) key: String,
     /// The byte offsets of the cursors.
     places: Vec<u32>,
-    /// Whether the document has been saved since.
+    /// True if the document has been saved since.
     is_saved: bool,
-    /// Whether completion has been requested since.
+    /// True if completion has been requested since.
     is_completed: bool,
 }
 
 /// A change of a text.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Replacement {
-    /// What was replaced in the text before.
+    /// The range replaced in the old text.
     span: Span,
     /// The length of the new text.
     length: u32,
@@ -51,7 +51,7 @@ fn cursor_in(text: &str) -> u32 {
     u32::try_from(end).unwrap_or(u32::MAX)
 }
 
-/// What the changes of one message replaced; `spans` has the range of each, `None` where the whole text was sent.
+/// Returns the replacements of one message; `spans` has the range of each, `None` if the whole text was sent.
 pub(crate) fn replacements(
     changes: &[TextDocumentContentChangeEvent],
     spans: &[Option<Span>],
@@ -95,7 +95,7 @@ impl Typing {
         if changes.is_empty() {
             return before;
         }
-        let is_typed = changes.len() == 1 || are_alike && changes.len() <= MOST_CURSORS;
+        let is_typed = changes.len() == 1 || are_alike && changes.len() <= MAX_CURSORS;
         let stays = before.filter(|before| before.key == key && !is_typed);
         if !is_typed && stays.is_none() {
             return None;
@@ -143,7 +143,7 @@ impl Typing {
         self.key == key && !std::mem::replace(&mut self.is_saved, true)
     }
 
-    /// Whether a cursor on these lines of a document has left the lines being typed in.
+    /// Returns whether a cursor on these lines of a document has left the lines being typed in.
     pub(crate) fn is_left(&self, key: &str, range: Range, text: &Rope) -> bool {
         let line_of = |place: &u32| text.byte_to_line((*place as usize).min(text.len_bytes()));
         let cursor = range.start.line as usize..=range.end.line as usize;

@@ -1,5 +1,5 @@
-//! A web server for one page on this machine: on loopback, and only for whoever knows its address, which has a random
-//! secret. Other pages, which know neither, get nothing: what is not allowed is answered like what does not exist.
+//! A web server for one page on this machine: on loopback, and only for clients that know its address, which has a random
+//! secret. Other pages, which know neither, get nothing: a request that is not allowed gets the answer for a missing page.
 //!
 //! Passes messages on and knows nothing of what they mean.
 
@@ -34,26 +34,27 @@ use crate::log::log;
 const SECRET_BYTES: usize = 16;
 
 /// The longest message of a page.
-const MOST_BYTES: usize = 64 << 10;
+const MAX_BYTES: usize = 64 << 10;
 
-/// How long a request may take to arrive, its head and its body each.
-const PATIENCE: Duration = Duration::from_secs(3);
+/// The time in which the head of a request has to arrive, and its body again.
+const REQUEST_TIMEOUT: Duration = Duration::from_secs(3);
 
-/// How many connections may be open; a browser opens six for one page. Others wait until the slow ones are dropped, and are
-/// told so if none is.
+/// The maximum number of open connections; a browser opens six for one page. Others wait until the slow ones are dropped, and
+/// are refused if none is.
 const MOST_CONNECTIONS: usize = 128;
 
-/// How many may wait for that. Still others are closed.
-const MOST_WAITING: usize = 128;
+/// The maximum number of connections that wait for that. Still others are closed.
+const MAX_WAITING: usize = 128;
 
-/// What one is told that has waited in vain.
+/// The answer to a connection that has waited in vain.
 const FULL: &str = "HTTP/1.1 503 Service Unavailable\r\nContent-Type: text/plain\r\nContent-Length: 62\r\n\
     Connection: close\r\n\r\nToo many pages are connected to the preview: close some first\n";
 
-/// How many events may wait for a page that is slow to read.
-const MOST_EVENTS: usize = 256;
+/// The maximum number of events that wait for a page that is slow to read.
+const MAX_EVENTS: usize = 256;
 
-/// What every answer says: nothing is loaded from elsewhere, nothing shows the page in a frame, and no copy is kept.
+/// The headers of every answer: nothing is loaded from elsewhere, nothing shows the page in a frame, and no copy is
+/// kept.
 const HEADERS: [(HeaderName, &str); 6] = [
     (
         header::CONTENT_SECURITY_POLICY,
@@ -78,7 +79,7 @@ pub(crate) struct File {
 /// Answers a message of a page.
 type Answer = Box<dyn Fn(&[u8]) -> Vec<u8> + Send + Sync>;
 
-/// What a page is given.
+/// The files, events and answers that pages get.
 pub(crate) struct Site {
     pub(crate) files: &'static [File],
     /// The first event of a page; later ones come from [`Sender::send`].
@@ -125,7 +126,7 @@ impl WebServer {
         listener.set_nonblocking(true)?;
         let host = listener.local_addr()?.to_string();
         let address = format!("http://{host}/{secret}/");
-        let (events, _) = broadcast::channel(MOST_EVENTS);
+        let (events, _) = broadcast::channel(MAX_EVENTS);
         let (stop, stopped) = oneshot::channel();
         let origin = format!("http://{host}");
         let door = Arc::new(Door { host, origin, secret, site, events: events.clone() });
@@ -172,7 +173,7 @@ type Body = UnsyncBoxBody<Bytes, Infallible>;
 
 /// Decides who may enter.
 struct Door {
-    /// What the address has for `Host`: a name that leads here has another one.
+    /// The `Host` of the address; a name that resolves to this machine has another one.
     host: String,
     origin: String,
     secret: String,
@@ -183,7 +184,7 @@ struct Door {
 /// Accepts connections until it fails.
 async fn accept(listener: TcpListener, door: Arc<Door>) -> io::Result<()> {
     let listener = tokio::net::TcpListener::from_std(listener)?;
-    let (room, queue) = (Arc::new(Semaphore::new(MOST_CONNECTIONS)), Arc::new(Semaphore::new(MOST_WAITING)));
+    let (room, queue) = (Arc::new(Semaphore::new(MOST_CONNECTIONS)), Arc::new(Semaphore::new(MAX_WAITING)));
     loop {
         match listener.accept().await {
             Ok((stream, _)) => {
@@ -191,7 +192,7 @@ async fn accept(listener: TcpListener, door: Arc<Door>) -> io::Result<()> {
                 let (door, room) = (Arc::clone(&door), Arc::clone(&room));
                 tokio::spawn(async move {
                     // The slow ones are dropped by then.
-                    let permit = timeout(2 * PATIENCE, room.acquire_owned()).await;
+                    let permit = timeout(2 * REQUEST_TIMEOUT, room.acquire_owned()).await;
                     drop(place);
                     match permit {
                         Ok(Ok(_permit)) => serve(stream, door).await,
@@ -205,10 +206,10 @@ async fn accept(listener: TcpListener, door: Arc<Door>) -> io::Result<()> {
     }
 }
 
-/// Tells a connection that there is no room for it.
+/// Answers a connection for which there is no room.
 async fn refuse(mut stream: TcpStream) {
     // It may have left.
-    let _ = timeout(PATIENCE, stream.write_all(FULL.as_bytes())).await;
+    let _ = timeout(REQUEST_TIMEOUT, stream.write_all(FULL.as_bytes())).await;
 }
 
 /// Serves one connection until it ends.
@@ -221,7 +222,7 @@ async fn serve(stream: TcpStream, door: Arc<Door>) {
     // It fails if the client does not speak HTTP, is too slow, or leaves.
     let _ = http1::Builder::new()
         .timer(TokioTimer::new())
-        .header_read_timeout(PATIENCE)
+        .header_read_timeout(REQUEST_TIMEOUT)
         .max_buf_size(16 << 10)
         .serve_connection(TokioIo::new(stream), service)
         .await;
@@ -233,8 +234,8 @@ impl Door {
         match (request.method(), name) {
             (&Method::GET, "events") => response("text/event-stream", self.events()),
             (&Method::POST, "messages") if is_json(request.headers()) => {
-                let message = Limited::new(request.into_body(), MOST_BYTES).collect();
-                match timeout(PATIENCE, message).await {
+                let message = Limited::new(request.into_body(), MAX_BYTES).collect();
+                match timeout(REQUEST_TIMEOUT, message).await {
                     Ok(Ok(message)) => {
                         response("application/json", full((self.site.answer)(&message.to_bytes())))
                     }
@@ -249,7 +250,7 @@ impl Door {
         }
     }
 
-    /// What a request asks for; `None` if it must not be answered.
+    /// Returns the path of a request, without the secret; `None` if it must not be answered.
     fn name<'a>(&self, request: &'a Request<Incoming>) -> Option<&'a str> {
         let headers = request.headers();
         // A page elsewhere that has its own name lead here sends that name.
@@ -301,7 +302,7 @@ fn is_json(headers: &HeaderMap) -> bool {
     matches!(only(headers, &header::CONTENT_TYPE), Ok(Some("application/json")))
 }
 
-/// Compares in a time that does not depend on what is equal.
+/// Compares in a time that does not depend on the content.
 fn is_equal(one: &[u8], other: &[u8]) -> bool {
     one.len() == other.len() && one.iter().zip(other).fold(0, |all, (one, other)| all | (one ^ other)) == 0
 }

@@ -19,6 +19,6 @@ pub(crate) struct FileWork<R> {
     pub(crate) snapshot: Snapshot,
     /// Cancelled when the file changes.
     pub(crate) outdated: CancellationToken,
-    /// What to do with it.
+    /// The work itself.
     pub(crate) run: Box<dyn FnOnce(Snapshot) -> R + Send>,
 }

@@ -25,7 +25,7 @@ impl Server {
         }
     }
 
-    /// What it does, in a sentence.
+    /// Returns a sentence on its behaviour.
     pub fn summary(self) -> &'static str {
         match self {
             Self::Embedded => "Answers every request, and forgets clients that have gone",
@@ -41,18 +41,18 @@ impl Server {
         Self::ALL.into_iter().find(|server| server.word() == word)
     }
 
-    /// Whether it answers nothing while the simulation is paused.
+    /// Returns whether it answers nothing while the simulation is paused.
     pub(crate) fn is_silent_while_paused(self) -> bool {
         self == Self::CoppeliaSim46
     }
 
-    /// Whether a step that was requested before a pause is taken after it, in place of being cancelled.
+    /// Returns whether a step that was requested before a pause is taken after it rather than cancelled.
     pub(crate) fn keeps_steps_over_pauses(self) -> bool {
         self != Self::Embedded
     }
 
-    /// Whether a client whose connection has ended stays until its timeout: it keeps holding the time, and its wheels keep
-    /// turning.
+    /// Returns whether a client whose connection has ended stays until its timeout: it keeps blocking steps, and its
+    /// wheels keep turning.
     pub(crate) fn keeps_lost_clients(self) -> bool {
         self != Self::Embedded
     }

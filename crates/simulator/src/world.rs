@@ -176,7 +176,7 @@ impl World {
         }
     }
 
-    /// Whether a wheel's motor follows its target (velocity control); otherwise it brakes.
+    /// Returns whether a wheel's motor follows its target (velocity control); otherwise it brakes.
     pub fn is_controlled(&self, robot: usize, wheel: usize) -> bool {
         self.joint(robot, wheel).is_some_and(|joint| !joint.released)
     }

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-/// What happened in a run: a line of what `--events` writes.
+/// An event of a run: a line of the file of `--events`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "event", rename_all = "kebab-case")]
 pub enum RunEvent {
@@ -28,24 +28,24 @@ pub enum RunEvent {
         t: Option<f64>,
         /// The robot that gets on, if it is one.
         robot: Option<String>,
-        /// How far it is.
+        /// The progress, in words.
         text: String,
     },
     /// Something worth knowing.
     Note {
-        /// What.
+        /// The note.
         text: String,
     },
-    /// Something is wrong, but the run goes on.
+    /// Something is wrong, but the run continues.
     Warning {
-        /// What.
+        /// The warning.
         text: String,
-        /// What to do about it.
+        /// Advice for the user.
         help: Option<String>,
     },
     /// A file of results is complete.
     File {
-        /// What it is.
+        /// Its kind.
         kind: FileKind,
         /// Its path.
         path: String,
@@ -99,13 +99,13 @@ pub struct Call {
     pub action: usize,
 }
 
-/// What a file of results is.
+/// The kind of a file of results.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum FileKind {
     /// Every step.
     Trace,
-    /// What robots explored.
+    /// The map made by exploring robots.
     Map,
     /// A picture of that.
     MapPicture,
@@ -120,7 +120,7 @@ pub enum FileKind {
 /// Why a run failed.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RunFailure {
-    /// What has failed.
+    /// The kind of failure.
     pub class: FailureClass,
     /// The reason, in words.
     pub message: String,
@@ -138,13 +138,13 @@ pub struct RunFailure {
     /// The statements that do other movements and lead to it, outermost first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub calls: Vec<Call>,
-    /// What to do about it.
+    /// Advice for the user.
     pub help: Option<String>,
-    /// What else the script wrote to standard error.
+    /// Other text that the script wrote to standard error.
     pub output: Option<String>,
 }
 
-/// What has failed.
+/// The kind of a failure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum FailureClass {

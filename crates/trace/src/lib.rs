@@ -1,4 +1,4 @@
-//! What a run reports: its events, traces of its robots, and maps made while exploring.
+//! The records of a run: its events, traces of its robots, and maps made while exploring.
 //!
 //! Knows poses. Must never know the language, how robots drive or are drawn, or files: callers read and deserialize them.
 //!

@@ -21,8 +21,8 @@ pub struct TraceRecord {
     /// Wheel rates, rad/s, in the order of the robot's wheels; positive values roll forward.
     #[serde(default)]
     pub wheels: Vec<f64>,
-    /// What its sensors have read since its record before: metres, or `None` for nothing, by name. A bumper that is pressed
-    /// reads 0. Only what a script has looked at; unknown to the simulator.
+    /// The readings of its sensors since its last record, by name: metres, or `None` for nothing. A bumper that is
+    /// pressed reads 0. Only what a script has looked at; unknown to the simulator.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub readings: BTreeMap<String, Option<f64>>,
     /// The current movement; unknown to the simulator.

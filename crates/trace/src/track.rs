@@ -49,7 +49,7 @@ impl Track {
     }
 }
 
-/// Whether the robot stayed longer than it could in motion: half a second.
+/// Returns whether the robot stayed longer than it could in motion: half a second.
 fn is_rest(from: &TimedPose, to: &TimedPose) -> bool {
     from.time.zip(to.time).is_some_and(|(from, to)| to - from > 0.5)
 }

@@ -1,4 +1,4 @@
-//! The environment of a program that somebody wants to see driven, and the scene it is driven in.
+//! The environment of a program to drive, and the scene it is driven in.
 
 use std::fmt;
 
@@ -33,7 +33,7 @@ impl fmt::Display for NoEnvironment {
 
 impl std::error::Error for NoEnvironment {}
 
-/// Why an environment has no scene: robots could meet something else than what was meant.
+/// Why an environment has no scene. It gets no other one, in which robots could meet other obstacles than intended.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SceneError {
     /// There is a file, which cannot be read.

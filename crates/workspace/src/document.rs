@@ -14,11 +14,11 @@ use crate::DocumentKind;
 pub struct Document {
     /// The name it is known by.
     pub key: String,
-    /// What it is.
+    /// Its kind.
     pub kind: DocumentKind,
     /// The text, without a byte order mark. The database holds the same rope, not a copy of it.
     pub text: Rope,
-    /// Whether a caller has it open; then the text is the caller's, whatever is on the disk.
+    /// True if a caller has it open; then the text is the caller's, whatever is on the disk.
     pub is_open: bool,
     /// A program's number in the database; `None` if it could not be analysed.
     pub file: Option<FileId>,
@@ -41,7 +41,7 @@ impl Document {
         }
     }
 
-    /// Whether it is a program.
+    /// Returns whether it is a program.
     pub fn is_program(&self) -> bool {
         self.kind == DocumentKind::Program
     }

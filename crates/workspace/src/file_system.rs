@@ -1,4 +1,4 @@
-//! How files are read, from a disk or from memory.
+//! Access to files, on a disk or in memory.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -14,14 +14,14 @@ pub trait FileSystem: fmt::Debug + Send + Sync {
     /// When the file does not exist, cannot be read, or is not text.
     fn read(&self, path: &Path) -> Result<String, ReadError>;
 
-    /// Whether there is a file, readable or not.
+    /// Returns whether there is a file, readable or not.
     fn is_file(&self, path: &Path) -> bool;
 
     /// All programs and scenes in a folder and below it, except what is hidden or ignored. Visits at most
     /// `max_entries` files and folders.
     fn list(&self, folder: &Path, max_entries: usize) -> Listing;
 
-    /// Whether [`FileSystem::list`] would find a file in a folder.
+    /// Returns whether [`FileSystem::list`] would find a file in a folder.
     fn lists(&self, folder: &Path, file: &Path) -> bool;
 }
 
@@ -34,7 +34,7 @@ pub struct Listing {
     pub scenes: Vec<PathBuf>,
     /// Why some folders could not be read.
     pub errors: Vec<String>,
-    /// Whether the limit cut the listing short.
+    /// True if the limit cut the listing short.
     pub is_truncated: bool,
 }
 
@@ -56,7 +56,7 @@ pub enum ReadError {
         /// The first line that is not, from 1.
         line: usize,
     },
-    /// What the system says.
+    /// Another error, in the system's words.
     Other(String),
 }
 

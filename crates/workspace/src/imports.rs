@@ -1,4 +1,4 @@
-//! What programs import, and how far imports may lead.
+//! The imports of programs, and the folders that they may lead to.
 
 use std::path::Path;
 
@@ -8,8 +8,8 @@ use crate::keys::path_of;
 use crate::{Document, DocumentKind, ReadError, Workspace};
 
 impl Workspace {
-    /// Whether an import in one file may lead to another: within the folders of the workspace, or within the folder
-    /// of the importing file's `pydslrep.toml`, or else its own.
+    /// Returns whether an import in one file may lead to another: within the folders of the workspace, or within the
+    /// folder of the importing file's `pydslrep.toml`, or else its own.
     pub fn may_import(&self, importer: &str, path: &str) -> bool {
         (self.contains(importer) && self.contains(path)) || self.is_in_project(importer, path)
     }
@@ -51,14 +51,14 @@ impl Workspace {
         }
     }
 
-    /// Whether a program that may import a file does.
+    /// Returns whether a program that may import a file does.
     pub(crate) fn is_imported(&self, key: &str, document: &Document) -> bool {
         self.database.importing_files(key).into_iter().any(|importer| {
             Some(importer) != document.file && self.database.absence(importer, key) != Some(&Absence::Outside)
         })
     }
 
-    /// What a document imports, which from now on counts as followed.
+    /// Returns the imports of a document, which from now on count as followed.
     fn imports_of(&mut self, key: &str) -> Option<(FileId, Vec<String>)> {
         let document = self.documents.get_mut(key)?;
         let file = document.file?;

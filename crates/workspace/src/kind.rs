@@ -1,10 +1,10 @@
-//! What a document is, by its name.
+//! The kind of a document, by its name.
 
 use std::path::Path;
 
 use pydslrep_text::file_names::{PROGRAM_EXTENSION, SCENE_SUFFIX, SETTINGS_FILE};
 
-/// What a document is. The order is the one in which diagnostics are reported.
+/// The kind of a document. The order is the one in which diagnostics are reported.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum DocumentKind {
     /// A program.

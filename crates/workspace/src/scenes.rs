@@ -18,7 +18,7 @@ pub(crate) struct SceneUsers {
 }
 
 impl SceneUsers {
-    /// Whether a program has the environment of a scene.
+    /// Returns whether a program has the environment of a scene.
     pub(crate) fn has_users(&self, scene: &str) -> bool {
         self.programs.contains_key(scene)
     }
@@ -75,7 +75,7 @@ impl Workspace {
         self.database.definitions(first, EntityKind::Environment, &name.into()).first().copied()
     }
 
-    /// Whether several programs have the environment of a scene.
+    /// Returns whether several programs have the environment of a scene.
     pub fn is_shared_scene(&self, scene: &str) -> bool {
         self.scenes.of(scene).len() > 1
     }

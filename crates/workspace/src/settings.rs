@@ -10,14 +10,14 @@ use rustc_hash::FxHashMap;
 use crate::keys::path_of;
 use crate::{DocumentKind, Workspace};
 
-/// What is set, and where.
+/// The settings and their sources.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct SettingsStore {
-    /// What the caller says: an editor, or the options of a command. It wins over any file.
+    /// Settings from the caller: an editor, or the options of a command. It wins over any file.
     overrides: Config,
-    /// What applies where no file says anything.
+    /// The settings where no file holds.
     pub(crate) without_file: Arc<Settings>,
-    /// What applies where a file does, by its key.
+    /// The settings of each file, by its key.
     files: FxHashMap<String, Arc<Settings>>,
     /// The key of the settings file that holds for a folder.
     nearest: FxHashMap<String, Option<String>>,
@@ -45,7 +45,7 @@ impl Workspace {
     }
 
     /// The folder for the scripts of a program: relative to the settings file that names it or, if the caller names
-    /// it, to the folder of the workspace. `None` if nobody does.
+    /// it, to the folder of the workspace. `None` if neither does.
     pub fn output_folder(&self, program: &str) -> Option<String> {
         let own = folder(program)?;
         let output = self.documents.get(program)?.settings.output.as_deref()?;
@@ -100,7 +100,7 @@ impl Workspace {
         }
     }
 
-    /// Whether a path is in the folder of the importing file's settings or, without any, in its own.
+    /// Returns whether a path is in the folder of the importing file's settings or, without any, in its own.
     pub(crate) fn is_in_project(&self, importer: &str, path: &str) -> bool {
         let bound = self.settings_file(importer).and_then(folder).or_else(|| folder(importer));
         bound.and_then(|bound| path.strip_prefix(bound)).is_some_and(|rest| rest.starts_with('/'))

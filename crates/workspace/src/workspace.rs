@@ -29,7 +29,7 @@ pub struct Workspace {
     pub(crate) changes: Changes,
 }
 
-/// What may have changed since it was last asked for.
+/// Changes that have not been taken yet.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Changes {
     /// Settings changed: nothing is certain.
@@ -39,7 +39,7 @@ pub struct Changes {
 }
 
 impl Changes {
-    /// Whether there are none.
+    /// Returns whether there are none.
     pub fn is_empty(&self) -> bool {
         !self.all && self.documents.is_empty()
     }
@@ -92,7 +92,7 @@ impl Workspace {
         keys
     }
 
-    /// What is wrong with a scene or a `pydslrep.toml`, in the order of the text. For programs ask the database.
+    /// Returns the problems of a scene or a `pydslrep.toml`, in the order of the text. For programs ask the database.
     pub fn problems(&self, key: &str) -> Vec<Problem> {
         let Some(document) = self.documents.get(key) else { return Vec::new() };
         match document.kind {
@@ -224,7 +224,7 @@ impl Workspace {
         self.follow_scenes();
     }
 
-    /// Whether there is a file with a key, readable or not.
+    /// Returns whether there is a file with a key, readable or not.
     pub fn is_file(&self, key: &str) -> bool {
         self.files.is_file(&path_of(key))
     }
@@ -241,12 +241,12 @@ impl Workspace {
         self.follow_scenes();
     }
 
-    /// Whether a file is in a folder of the workspace.
+    /// Returns whether a file is in a folder of the workspace.
     pub fn contains(&self, key: &str) -> bool {
         self.folders.iter().any(|folder| key.starts_with(folder.as_str()))
     }
 
-    /// Whether a listing of the workspace's folders would find a file.
+    /// Returns whether a listing of the workspace's folders would find a file.
     pub fn is_listed(&self, key: &str) -> bool {
         let mut folders = self.folders.iter().filter(|folder| key.starts_with(folder.as_str()));
         folders.any(|folder| self.files.lists(&path_of(folder), &path_of(key)))
@@ -267,12 +267,12 @@ impl Workspace {
         result
     }
 
-    /// Whether [`Self::take_changes`] would return anything.
+    /// Returns whether [`Self::take_changes`] would return anything.
     pub fn has_changes(&self) -> bool {
         !self.changes.is_empty() || self.database.is_touched()
     }
 
-    /// What may have changed since this was last asked.
+    /// Returns the changes since the last call.
     pub fn take_changes(&mut self) -> Changes {
         let mut changes = std::mem::take(&mut self.changes);
         for file in self.database.take_touched() {
@@ -280,7 +280,7 @@ impl Workspace {
             if !path.is_empty() {
                 changes.documents.insert(path.to_owned());
             }
-            // What is wrong with a scene depends on the robots in it.
+            // The problems of a scene depend on the robots in it.
             changes.documents.extend(self.scenes_of(file));
         }
         changes

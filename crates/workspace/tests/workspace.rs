@@ -166,7 +166,7 @@ fn imports_stay_in_the_folders_of_the_workspace() {
     assert_eq!(fixture.known(), ["project/main.pyr"]);
 }
 
-/// The nearest settings bound the imports of the file they hold for, whoever imports that file.
+/// The nearest settings bound the imports of the file they hold for, whichever file imports that.
 #[test]
 fn settings_bound_imports_of_each_file() {
     let mut fixture = Fixture::new(&[
@@ -325,7 +325,7 @@ fn a_byte_order_mark_is_not_part_of_the_text() {
     assert_eq!(fixture.workspace.document("/w/a.pyr").unwrap().text, "wheel");
 }
 
-/// There is one rope for each text, whoever holds it.
+/// There is one rope for each text, shared by all holders.
 #[test]
 fn the_database_shares_the_text() {
     let mut fixture = Fixture::new(&[]);

@@ -1,14 +1,21 @@
 """Exploration: chooses where to go next until no frontier is left."""
 
+import itertools
 import math
 from collections import Counter
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
 from typing import Protocol
 
 from ..pose import Pose, wrap_angle
 from .occupancy_grid import OccupancyGrid, Position
 from .topological_map import Frontier, Node, TopologicalMap
+
+# A closer look, if no frontier is left: lengths in steps, m from a node that is new, and steps
+# from the nearest node, without an obstacle between, where something may be unseen.
+CLOSE_LENGTHS = 1.0, 0.8, 0.6
+CLOSE = 0.15
+FAR_STEPS = 2.0
 
 
 class Rover(Protocol):
@@ -94,11 +101,13 @@ class Explorer:
         # as its pose is off: from each node nearby, that looks like another way through.
         self._bumps: list[Position] = []
         self._max_bumps = 4 if prefers_walls else math.inf
+        self._looks_closely = prefers_walls
+        self._looked_at: set[tuple[int, float]] = set()  # nodes and bearings
 
     async def explore(self) -> None:
         """Explores until no frontier is left; raises UnboundedAreaError."""
         self._here = await self._add_node()
-        while target := self._nearest_target():
+        while target := self._nearest_target() or self._overlooked_target():
             if await self._travel_to(target.node):
                 await self._explore_frontier(target)
         for node in self.map.nodes:
@@ -127,7 +136,7 @@ class Explorer:
                 ]
                 cost = distance + 0.1 * self._step * turn + self.map.DETOUR * blocks
                 if cost < least and self._open_space_cost:
-                    goal = self._endpoint(node, frontier.bearing)
+                    goal = self._endpoint(node, frontier.bearing, frontier.length)
                     cost += self._open_space_cost * self._grid.is_featureless(goal)
                 if cost >= least or self._is_given_up(node, frontier):
                     continue
@@ -137,6 +146,10 @@ class Explorer:
 
     def _is_given_up(self, node: Node, frontier: Frontier) -> bool:
         """Whether obstacles have stopped the robot too often on the way."""
+        return self._bumps_ahead(node, frontier) >= self._max_bumps
+
+    def _bumps_ahead(self, node: Node, frontier: Frontier) -> int:
+        """How often obstacles have stopped the robot on the way."""
         here = Pose(node.x, node.y, frontier.bearing)
         radius = self._grid.radius
         count = 0
@@ -144,21 +157,77 @@ class Explorer:
             bump = Pose(x, y, 0.0).relative_to(here)
             is_ahead = 0.0 < bump.x < self._step + radius
             count += is_ahead and abs(bump.y) < 0.6 * radius
-        return count >= self._max_bumps
+        return count
 
     def _target(self, node: Node, frontier: Frontier) -> Target | None:
         """What to explore through a frontier; None if it leads to a known node."""
-        goal = self._endpoint(node, frontier.bearing)
-        for known_node in self.map.nodes_near(goal, self._spacing):
-            if known_node is node or not self._grid.is_path_clear(
-                goal, known_node.position
-            ):
+        goal = self._endpoint(node, frontier.bearing, frontier.length)
+        for known_node in self._nodes_around(goal):
+            if known_node is node:
                 continue
             if self._closes_loop(node, known_node):
                 return Target(node, frontier, known_node.position, known_node)
             frontier.target = known_node.number
             return None
         return Target(node, frontier, goal)
+
+    def _nodes_around(
+        self, position: Position, within: float | None = None
+    ) -> Iterator[Node]:
+        """The nodes that a position belongs to, or those within another distance."""
+        for node in self.map.nodes_near(position, within or self._spacing):
+            if self._grid.is_path_clear(position, node.position):
+                yield node
+
+    def _overlooked_target(self) -> Target | None:
+        """A target between those directions that were tried, from where a new way leads on.
+
+        A robot that is unsure of its pose keeps farther away from walls: few ways lead through
+        a narrow door. Each direction is tried once.
+        """
+        if not self._looks_closely:
+            return None
+        distances = self.map.distances(self._here)
+        for number in sorted(distances, key=distances.__getitem__):
+            node = self.map.nodes[number]
+            for frontier in self._overlooked(node):
+                self._looked_at.add((number, frontier.bearing))
+                node.frontiers.append(frontier)
+                # An obstacle there is a wall, as the grid may have holes in walls.
+                index = self._bearing_index(frontier.bearing)
+                self._blocks[number, index] = self._max_attempts - 1
+                goal = self._endpoint(node, frontier.bearing, frontier.length)
+                return Target(node, frontier, goal)
+        return None
+
+    def _overlooked(self, node: Node) -> Iterator[Frontier]:
+        """Directions that lead to new ways."""
+        for bearing, length in itertools.product(self._close_bearings(), CLOSE_LENGTHS):
+            goal = self._endpoint(node, bearing, length)
+            frontier = Frontier(bearing, length=length)
+            index = self._bearing_index(bearing)
+            if (
+                (node.number, bearing) not in self._looked_at
+                and self._blocks[node.number, index] < self._max_attempts
+                and self._grid.is_path_clear(node.position, goal)
+                and not any(self._nodes_around(goal, CLOSE))
+                and self._leads_on(goal)
+                and not self._bumps_ahead(node, frontier)
+            ):
+                yield frontier
+
+    def _close_bearings(self) -> list[float]:
+        count = 3 * self.BEARINGS
+        return [wrap_angle(index * math.tau / count) for index in range(count)]
+
+    def _leads_on(self, goal: Position) -> bool:
+        """Whether there is room for another step, to what is not seen from a node nearby."""
+        ends = (Pose(*goal, bearing).ahead(self._step) for bearing in self._bearings())
+        return any(
+            self._grid.is_path_clear(goal, end)
+            and not any(self._nodes_around(end, FAR_STEPS * self._step))
+            for end in ((pose.x, pose.y) for pose in ends)
+        )
 
     def _closes_loop(self, node: Node, known_node: Node) -> bool:
         """Whether driving to a known node closes a loop."""
@@ -365,6 +434,6 @@ class Explorer:
     def _bearing_index(self, bearing: float) -> int:
         return round(bearing / math.tau * self.BEARINGS) % self.BEARINGS
 
-    def _endpoint(self, node: Node, bearing: float) -> Position:
-        end = Pose(node.x, node.y, bearing).ahead(self._step)
+    def _endpoint(self, node: Node, bearing: float, length: float = 1.0) -> Position:
+        end = Pose(node.x, node.y, bearing).ahead(length * self._step)
         return end.x, end.y

@@ -97,15 +97,20 @@ class SlamRover:
         bearing = math.atan2(goal[1] - here.y, goal[0] - here.x)
         await self.turn_by(wrap_angle(bearing - here.theta))
         self._obstacle = None
+        self._look_along(bearing)
 
         def must_stop(here: Pose) -> bool:
             return self._observe(here) and (self._obstacle is not None or should_stop())
 
-        await self._robot.drive_to(Pose(*goal, bearing), must_stop)
+        if self._obstacle is None:
+            await self._robot.drive_to(Pose(*goal, bearing), must_stop)
         if self._obstacle is None:
             return True
         self._mark_obstacle(*self._obstacle)
         return False
+
+    def _look_along(self, bearing: float) -> None:
+        """Called before the robot drives along a bearing; may find an obstacle."""
 
     async def back_up_to(self, goal: Position) -> None:
         """Reverses to a position behind the robot."""

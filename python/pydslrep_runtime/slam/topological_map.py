@@ -17,6 +17,7 @@ class Frontier:
 
     bearing: float  # radians, counter-clockwise from the world's x axis
     target: int | None = None  # the node it leads to; None while unexplored
+    length: float = 1.0  # of the way to its end, in steps
 
 
 @dataclass

@@ -73,7 +73,7 @@ struct Script {
     environment: String,
     lines_in: usize,
     text: String,
-    /// Whether the package that it imports goes next to it.
+    /// True if the package that it imports is written next to it.
     needs_runtime: bool,
 }
 

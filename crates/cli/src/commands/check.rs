@@ -1,4 +1,4 @@
-//! `pydslrep check`: what is wrong with programs.
+//! `pydslrep check`: the problems of programs.
 
 mod watching;
 
@@ -75,7 +75,7 @@ enum Format {
     Sarif,
 }
 
-/// What is denied besides errors.
+/// The severities that are denied besides errors.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub(crate) enum Deny {
     Warnings,
@@ -152,7 +152,7 @@ fn human(inputs: &Inputs, diagnostics: &[Diagnostic], scene_problems: &[ScenePro
         .map_or(problems.clone(), |summary| format!("{problems}{summary}\n"))
 }
 
-/// What was found, in one line; `None` where nothing was read: there is nothing to be pleased about.
+/// Returns the number of problems, in one line; `None` if nothing was read.
 fn summary(inputs: &Inputs, diagnostics: &[Diagnostic], scene_problems: &[SceneProblem]) -> Option<String> {
     if diagnostics.is_empty() && scene_problems.is_empty() {
         let files = inputs.files();
@@ -166,7 +166,7 @@ fn summary(inputs: &Inputs, diagnostics: &[Diagnostic], scene_problems: &[SceneP
     })
 }
 
-/// What was fixed, in words.
+/// Describes the fixes made.
 fn fix_summary(fixed: &Fixed, left: &[Diagnostic]) -> String {
     match (fixed.count(), left) {
         (0, []) => String::new(),

@@ -86,7 +86,7 @@ struct Request<'a> {
 
 #[derive(Debug, Deserialize)]
 struct Answer {
-    /// Whether the simulator replied.
+    /// True if the simulator replied.
     reached: bool,
     findings: Vec<Finding>,
 }
@@ -106,7 +106,7 @@ struct Robot<'a> {
     objects: &'a Objects,
 }
 
-/// What is wrong with a scene.
+/// A problem of a scene.
 #[derive(Debug, Serialize, Deserialize)]
 struct Finding {
     code: String,

@@ -43,7 +43,7 @@ pub(crate) struct Arguments {
 struct Formatted {
     source: Source,
     text: String,
-    /// Whether mistakes kept a part of it from being laid out.
+    /// True if errors kept a part of it from being formatted.
     has_errors: bool,
 }
 
@@ -90,7 +90,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     }))
 }
 
-/// Writes what changes to where it came from.
+/// Writes changed programs back.
 fn write(programs: &[Formatted], failures: &mut Vec<Failure>) -> Result<(), Failure> {
     let (mut changed, mut unchanged) = (0, 0);
     for program in programs {

@@ -53,7 +53,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Whether a text can be a name in a program.
+/// Returns whether a text can be a name in a program.
 pub(crate) fn is_name(name: &str) -> bool {
     name.chars().all(|c| c == '_' || c.is_ascii_alphanumeric())
         && !name.starts_with(|c: char| c.is_ascii_digit())
@@ -95,7 +95,7 @@ environment {name}_area has {{ robot_1 }} robots with {{ square }} moves
     )
 }
 
-/// What the robot drives around.
+/// Returns the scene that the robot drives in.
 fn scene_text() -> String {
     "\
 # What the embedded simulator puts on the floor. Metres and degrees; x is ahead of a robot with heading 0, y to its left.

@@ -93,7 +93,7 @@ fn words(failure: &Failure) -> String {
     }
 }
 
-/// Whether something listens at an address.
+/// Describes whether something listens at an address.
 fn simulator(host: &str, port: u16) -> String {
     match connect(host, port) {
         Ok(_) => format!("something listens on {host}:{port}: `pydslrep doctor PROGRAM` checks its scene"),

@@ -148,12 +148,12 @@ fn table(planned: &Planned) -> String {
     if let Some(wheels) = table.column_mut(last).filter(|_| is_narrow) {
         wheels.set_constraint(ColumnConstraint::Hidden);
     }
-    let met: String = collisions(&planned.scene, &planned.plan)
+    let contacts: String = collisions(&planned.scene, &planned.plan)
         .iter()
         .map(|collision| output::wrapped(&meeting(planned, collision)) + "\n")
         .collect();
-    let met = if met.is_empty() { met } else { met + "\n" };
-    format!("{title}\n\n{}\n\n{met}", table.trim_fmt())
+    let contacts = if contacts.is_empty() { contacts } else { contacts + "\n" };
+    format!("{title}\n\n{}\n\n{contacts}", table.trim_fmt())
 }
 
 /// Text wrapped to a width; continuation lines keep its indentation and two columns more.
@@ -251,7 +251,7 @@ struct JsonCollision<'a> {
     with: JsonThing<'a>,
 }
 
-/// What a robot collides with.
+/// The other side of a collision.
 #[derive(Serialize)]
 #[serde(rename_all = "snake_case")]
 enum JsonThing<'a> {
@@ -267,7 +267,7 @@ struct JsonRobot<'a> {
     /// The ways that it may take from there, as far as they have a bound: ends of actions, in order.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     possible: Vec<Vec<JsonPose<'a>>>,
-    /// Whether more actions are planned than are listed.
+    /// True if more actions are planned than are listed.
     #[serde(skip_serializing_if = "is_false")]
     truncated: bool,
 }

@@ -53,7 +53,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let runtime = runtime.map_err(|error| unstarted(&error))?;
     // The preview has a runtime of its own, which must not be dropped inside of this one.
     let mut preview = start(arguments)?;
-    // Before anything is printed: whoever reads how to stop it may do so at once.
+    // Before anything is printed: a user who reads how to stop it may do so at once.
     let interrupts = {
         let _context = runtime.enter();
         Interrupts::listen().map_err(|error| unstarted(&error))?

@@ -105,7 +105,7 @@ fn compare(arguments: &Arguments, program: &Path) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// What the robots of a program did by a record.
+/// Returns the paths that the robots of a program drove, from a record.
 fn driven(arguments: &Arguments, planned: &Planned) -> Result<Driven, Failure> {
     let record = read(arguments)?;
     let recorded = record.robots();
@@ -147,7 +147,7 @@ fn show(arguments: &Arguments) -> Result<ExitCode, Failure> {
         let poses = track.poses();
         if let (Some(from), Some(to)) = (track.start(), track.end()) {
             let [from, to] = [from, to].map(|pose| [fixed(pose.x, 3), fixed(pose.y, 3), heading(pose.theta)]);
-            table.add_row([&[name.clone()], &from[..], &to, &[fixed(way(&poses), 3)]].concat());
+            table.add_row([std::slice::from_ref(&name), &from[..], &to, &[fixed(way(&poses), 3)]].concat());
         }
         routes.push(route(name, poses));
     }

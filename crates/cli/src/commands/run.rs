@@ -254,7 +254,7 @@ fn unstarted(error: &dyn std::fmt::Display) -> Failure {
     Failure::new(format!("cannot start a run: {error}"))
 }
 
-/// What tells the clients of this run from others: the name of its folder is unique.
+/// Returns the token of this run's clients: the name of its folder is unique.
 fn token(folder: &Path) -> String {
     let name = folder.file_name().unwrap_or_default().to_string_lossy();
     format!("{}-{name}", std::process::id())
@@ -323,9 +323,9 @@ impl Run<'_> {
         let ending = drive(&script, listener, &mut interrupts).await;
         let wall = begin.elapsed();
         progress.clear();
-        let strangers = simulator.as_ref().map_or(0, Simulator::strangers);
-        if strangers > 0 {
-            let others = output::count(strangers, "connection");
+        let refused = simulator.as_ref().map_or(0, Simulator::refused_connections);
+        if refused > 0 {
+            let others = output::count(refused, "connection");
             let refused = format!("{others} of other programs to the simulator of this run refused");
             self.reporter.warn(&refused, None);
         }
@@ -343,7 +343,7 @@ impl Run<'_> {
         self.report(ending?, &driven, wall)
     }
 
-    /// Whether any robot is not the user's own.
+    /// Returns whether any robot is simulated rather than the user's own.
     fn needs_simulator(&self) -> bool {
         !self.simulated.is_empty()
     }
@@ -352,7 +352,7 @@ impl Run<'_> {
         !self.arguments.robot.is_empty()
     }
 
-    /// Whether there are robots that drive in `MuJoCo`.
+    /// Returns whether there are robots that drive in `MuJoCo`.
     fn is_in_mujoco(&self) -> bool {
         self.arguments.engine == Engine::MuJoCo && self.needs_simulator()
     }
@@ -361,7 +361,7 @@ impl Run<'_> {
         World::write(&self.simulated_scene(), folder, self.arguments.speed, self.arguments.view)
     }
 
-    /// Whether the script alone knows some of the paths.
+    /// Returns whether only the script knows some of the paths.
     fn needs_trace(&self) -> bool {
         let arguments = self.arguments;
         arguments.host.is_some()
@@ -524,7 +524,7 @@ impl Run<'_> {
             None => 0,
             Some(FailureClass::Action) => 1,
             Some(FailureClass::Interrupted) => interrupt::EXIT_CODE,
-            // What was driven says nothing about the program.
+            // The driven path then says nothing about the program.
             Some(_) => return Ok(Failure::EXIT_CODE),
         };
         let figures = outcome.figures();

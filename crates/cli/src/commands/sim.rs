@@ -42,7 +42,7 @@ const HELP: Help = Help {
     ],
 };
 
-/// How often the trace is written.
+/// The interval at which the trace is written.
 const WRITE_PERIOD: Duration = Duration::from_millis(50);
 
 /// Start the embedded simulator alone, for scripts of your own
@@ -107,7 +107,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     }
 }
 
-/// Refuses what `MuJoCo` cannot do: it has no ports, and is in the process of the node.
+/// Refuses options that `MuJoCo` does not have: it has no ports, and is in the process of the node.
 fn check_mujoco(arguments: &Arguments) -> Result<(), Failure> {
     if !arguments.ros2 {
         return Err(Failure::new("--engine mujoco has no ports for scripts: it needs --ros2")
@@ -263,7 +263,7 @@ async fn ended(node: &mut Option<Node>) -> Failure {
     }
 }
 
-/// How to stop the node, and how to run a script that drives in it.
+/// Returns the hints for stopping the node and for running a script that drives in it.
 fn ros2_steps(arguments: &Arguments, program: &Path) -> String {
     let option = |name: &str, value: Option<&Path>| {
         value.map(|value| format!(" {name} {}", quoted(value))).unwrap_or_default()
@@ -277,7 +277,7 @@ fn ros2_steps(arguments: &Arguments, program: &Path) -> String {
     )
 }
 
-/// How to stop the simulator, and how to run the script: `script` is where `build` writes it.
+/// Returns the hints for stopping the simulator and for running the script: `script` is where `build` writes it.
 fn next_steps(
     arguments: &Arguments,
     program: &Path,

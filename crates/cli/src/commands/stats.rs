@@ -38,7 +38,7 @@ pub(crate) struct Arguments {
 struct Lines {
     program: usize,
     python: usize,
-    /// Percent of the lines of Python that nobody had to write.
+    /// Percent of the lines of Python that the program saves.
     saved: f64,
 }
 
@@ -78,7 +78,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let (inputs, file) = Inputs::open_one(&arguments.program, &Config::default())?;
     let ids = program::environments(&inputs, file, None);
     if ids.is_empty() {
-        // This says what to do about it.
+        // The error of this has advice.
         program::environment(&inputs, file, None)?;
     }
     let prepared = program::prepare(&inputs, file, &ids);

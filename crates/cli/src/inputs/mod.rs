@@ -1,4 +1,4 @@
-//! What the command works on: the programs that were named, in the workspace they belong to.
+//! The input of the command: the named programs, in the workspace they belong to.
 
 pub(crate) mod lines;
 pub(crate) mod paths;
@@ -48,7 +48,7 @@ pub(crate) struct Inputs {
     files: Vec<FileId>,
     /// The keys of all scenes in folders that were named.
     scenes: BTreeSet<String>,
-    /// What documents are called in output, by key.
+    /// The names of documents in output, by key.
     names: HashMap<String, String>,
     /// Where each named program is on the disk; standard input is nowhere.
     places: HashMap<FileId, PathBuf>,
@@ -152,7 +152,7 @@ impl Inputs {
         self.workspace.database()
     }
 
-    /// What a program is called in output.
+    /// Returns the name of a program in output.
     pub(crate) fn shown(&self, file: FileId) -> &str {
         self.names.get(self.database().path(file)).map_or("", String::as_str)
     }
@@ -186,7 +186,7 @@ impl Inputs {
         named.map(|folder| near(&path_of(&folder))).or_else(beside)
     }
 
-    /// What is wrong with all named programs, with the severities that are set for each.
+    /// Returns the problems of all named programs, with the severities that are set for each.
     pub(crate) fn all_diagnostics(&self) -> Vec<Diagnostic> {
         let of_file =
             |file: &FileId| self.settings(*file).severities.applied(self.database().diagnostics(*file));
@@ -236,7 +236,7 @@ impl Inputs {
         texts
     }
 
-    /// What a document is called in output, by its key.
+    /// Returns the name of a document in output, by its key.
     fn name(&self, key: &str) -> String {
         self.names.get(key).cloned().unwrap_or_else(|| shown(&near(&path_of(key))))
     }

@@ -59,7 +59,7 @@ fn known(inputs: &Inputs, files: &[FileId]) -> String {
 pub(crate) struct Prepared {
     /// In the order asked for.
     pub(crate) environments: Vec<Environment>,
-    /// Whether an environment was skipped, or the program has other errors.
+    /// True if an environment was skipped, or the program has other errors.
     pub(crate) has_errors: bool,
 }
 
@@ -110,7 +110,7 @@ fn problems(inputs: &Inputs, file: FileId, errors: &[Diagnostic]) -> Vec<Diagnos
     problems
 }
 
-/// What tells problems apart.
+/// The identity of a problem.
 type Place<'a> = (FileId, u32, u32, &'static str, &'a str);
 
 fn place(problem: &Diagnostic) -> Place<'_> {

@@ -10,23 +10,23 @@ use pydslrep_workspace::{FileSystem, ReadError};
 use super::paths::{absolute, shown};
 use crate::failure::Failure;
 
-/// What standard input is called on the command line.
+/// Standard input on the command line.
 const STDIN: &str = "-";
 
-/// What standard input is called in output.
+/// The name of standard input in output.
 pub(crate) const STDIN_SHOWN: &str = "<stdin>";
 
 /// A program as it is on the disk, byte order mark and all.
 #[derive(Debug)]
 pub(crate) struct Source {
-    /// What it is called in output.
+    /// Its name in output.
     pub(crate) shown: String,
     /// Where it is; `None` for standard input.
     pub(crate) place: Option<PathBuf>,
     pub(crate) text: String,
 }
 
-/// What was named on the command line.
+/// The inputs named on the command line.
 #[derive(Debug, Default)]
 pub(crate) struct Found {
     /// The programs, each once, sorted by name.

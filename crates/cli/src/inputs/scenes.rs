@@ -1,4 +1,4 @@
-//! The scenes that environments are driven in, and what is wrong with them.
+//! The scenes that environments are driven in, and their problems.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -23,11 +23,11 @@ pub(crate) const SEVERITY: pydslrep_analysis::Severity = pydslrep_analysis::Seve
 /// A problem in a scene file.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct SceneProblem {
-    /// What the file is called in output.
+    /// The name of the file in output.
     pub(crate) shown: String,
     /// Where it is in the file.
     pub(crate) range: PlaceRange,
-    /// What it is.
+    /// The problem itself.
     pub(crate) problem: Problem,
     /// It for people, with its line.
     rendered: String,
@@ -82,7 +82,7 @@ impl Inputs {
         })
     }
 
-    /// What is wrong with the scenes of the programs and of the folders that were named, and why some could not be
+    /// Returns the problems of the scenes of the named programs and folders, and the errors of scenes that could not be
     /// read.
     pub(crate) fn scene_problems(&self) -> (Vec<SceneProblem>, Vec<Failure>) {
         let of_programs = self.files.iter().flat_map(|file| self.workspace.scene_keys(*file));

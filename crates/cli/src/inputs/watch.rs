@@ -14,11 +14,11 @@ use tokio::time::timeout;
 
 use crate::failure::Failure;
 
-/// How long changes must pause before the next check: editors save in several steps.
+/// The pause in changes before the next check: editors save in several steps.
 const QUIET: Duration = Duration::from_millis(50);
 
 /// A check starts after this many events even if they do not pause.
-const MOST_EVENTS: usize = 10_000;
+const MAX_EVENTS: usize = 10_000;
 
 /// The files and folders to watch.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -80,7 +80,7 @@ impl Watch {
                 break;
             }
         }
-        for _ in 0..MOST_EVENTS {
+        for _ in 0..MAX_EVENTS {
             if timeout(QUIET, self.events.recv()).await.is_err() {
                 break;
             }

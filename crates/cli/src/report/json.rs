@@ -42,7 +42,7 @@ struct Replacement<'a> {
 /// The problems as one array.
 ///
 /// # Errors
-/// Never, with what is handed in here.
+/// Never, with the values passed here.
 pub(crate) fn array(
     inputs: &Inputs,
     diagnostics: &[Diagnostic],

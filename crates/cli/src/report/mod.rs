@@ -1,4 +1,4 @@
-//! What is printed.
+//! The output of the command.
 //!
 //! [`output`] writes to the terminal; [`render`] draws diagnostics for people, [`json`], [`github`] and [`sarif`] write
 //! them for programs.

@@ -32,7 +32,7 @@ pub(crate) fn print_raw(text: &str) -> Result<(), Failure> {
 }
 
 fn unprinted(error: &io::Error) -> Failure {
-    /// What Windows says of a pipe that its reader has closed (`ERROR_PIPE_NOT_CONNECTED`).
+    /// The error code of Windows for a pipe that its reader has closed (`ERROR_PIPE_NOT_CONNECTED`).
     const NOT_CONNECTED: i32 = 233;
     match error.kind() {
         io::ErrorKind::BrokenPipe => Failure::NoReader,
@@ -73,17 +73,17 @@ pub(crate) fn fail(failure: &Failure) {
     }
 }
 
-/// Reports an error and what to do about it.
+/// Reports an error, with advice.
 pub(crate) fn error(message: &str, help: Option<&str>) {
     report(&Level::ERROR, message, help);
 }
 
-/// Reports what did not keep a command from being carried out, and what to do about it.
+/// Reports a warning, with advice.
 pub(crate) fn warning(message: &str, help: Option<&str>) {
     report(&Level::WARNING, message, help);
 }
 
-/// Reports what is worth knowing.
+/// Reports a note.
 pub(crate) fn note(message: &str) {
     report(&Level::NOTE, message, None);
 }

@@ -1,4 +1,4 @@
-//! Problems for people: the source line, carets, related places, and what a fix would write.
+//! Problems for people: the source line, carets, related places, and the text of fixes.
 
 use std::ops::Range;
 
@@ -88,14 +88,14 @@ fn snippets<'a>(inputs: &'a Inputs, diagnostic: &'a Diagnostic) -> Vec<Element<'
     files.into_iter().map(snippet).collect()
 }
 
-/// A fix with what it would write. What `--fix` would do goes by another name than what a person should look at first.
+/// A fix with the text that it would write. Fixes that `--fix` applies are named differently from those to look at first.
 fn fix<'a>(inputs: &'a Inputs, fix: &'a Fix) -> Group<'a> {
     let name = if fix.safe { "fix" } else { "suggestion" };
     let title = Level::HELP.with_name(name).secondary_title(&fix.title);
     let Some(file) = fix.edits.first().map(|edit| edit.file) else {
         return Group::with_title(title);
     };
-    // What a fix changes in other files is seen there.
+    // Only the edits in this file are shown.
     let edits: Vec<_> = fix.edits.iter().filter(|edit| edit.file == file).collect();
     let window = Window::about(inputs.database(), file, edits.iter().map(|edit| edit.span));
     let patches: Vec<Patch> = edits

@@ -13,7 +13,7 @@ use crate::report::place::{self, PlaceRange};
 
 const SCHEMA: &str = "https://json.schemastore.org/sarif-2.1.0.json";
 
-/// What cannot stand in a URI as it is. A colon could be taken for the end of a scheme.
+/// The characters that are escaped in a URI. A colon could be taken for the end of a scheme.
 const RESERVED: &AsciiSet = &CONTROLS
     .add(b' ')
     .add(b'"')
@@ -35,7 +35,7 @@ const RESERVED: &AsciiSet = &CONTROLS
 /// The problems as one log with one run.
 ///
 /// # Errors
-/// Never, with what is handed in here.
+/// Never, with the values passed here.
 pub(crate) fn log(
     inputs: &Inputs,
     diagnostics: &[Diagnostic],

@@ -1,4 +1,4 @@
-//! What was found, counted.
+//! The summary of a check: the number of problems by severity.
 
 use pydslrep_analysis::{Diagnostic, Severity};
 

@@ -17,11 +17,11 @@ pub(crate) const FINENESS: f64 = 0.002;
 pub(crate) struct Driven {
     robots: Vec<Robot>,
     tracks: Vec<Track>,
-    /// What sensors saw by the readings in a trace.
+    /// The sightings of sensors, by the readings in a trace.
     read: Sightings,
     /// Simulation time of the last record, seconds.
     pub(crate) time: f64,
-    /// What sensors saw in the embedded simulator.
+    /// The sightings of sensors in the embedded simulator.
     pub(crate) sightings: Sightings,
     /// The robots in the embedded simulator.
     simulated: Vec<usize>,
@@ -46,7 +46,7 @@ impl Driven {
         }
     }
 
-    /// Adds what the simulator recorded.
+    /// Adds the records of the simulator.
     pub(crate) fn extend(&mut self, records: &[TraceRecord]) {
         for record in records {
             self.add(record);

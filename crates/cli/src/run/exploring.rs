@@ -10,7 +10,7 @@ use pydslrep_trace::{Map, MapFile};
 
 use crate::failure::Failure;
 
-/// Whether a movement of the environment explores.
+/// Returns whether a movement of the environment explores.
 pub(crate) fn explores(environment: &Environment) -> bool {
     let actions = environment.movements.iter().flat_map(|movement| nested(&movement.actions));
     actions.into_iter().any(|action| action.kind == ActionKind::Slam)
@@ -21,7 +21,7 @@ pub(crate) fn file(asked: Option<&Path>, environment: &Environment) -> PathBuf {
     asked.map_or_else(|| format!("{}_map.json", environment.name).into(), Path::to_owned)
 }
 
-/// Arguments for what not every simulator can tell a script: the size of robots and the field of view of sensors.
+/// Arguments for facts that scripts do not get from every simulator: the size of robots and the field of view of sensors.
 pub(crate) fn arguments(scene: &Scene) -> Vec<OsString> {
     let mut all = Vec::new();
     for robot in &scene.robots {

@@ -19,7 +19,7 @@ pub(crate) struct Outcome<'a> {
     pub(crate) driven: &'a Driven,
     /// Wall time from the start of the script to its end; `None` for a run that was recorded some time.
     pub(crate) wall: Option<Duration>,
-    /// Whether every movement was completed.
+    /// True if every movement was completed.
     pub(crate) is_complete: bool,
 }
 
@@ -27,7 +27,7 @@ pub(crate) struct Outcome<'a> {
 #[derive(Debug, Serialize)]
 pub(crate) struct Figures<'a> {
     environment: &'a str,
-    /// Whether every movement was completed.
+    /// True if every movement was completed.
     complete: bool,
     /// Planned duration; `None` if it cannot be planned.
     planned: Option<f64>,

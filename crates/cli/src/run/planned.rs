@@ -63,8 +63,8 @@ impl Planned {
     /// # Errors
     /// If a file cannot be written.
     pub(crate) fn draw(&self, pictures: &Pictures, title: &str, routes: &[Route]) -> Result<(), Failure> {
-        let met = collisions(&self.scene, &self.plan);
-        let collisions: Vec<(f64, f64)> = met.iter().map(|met| (met.pose.x, met.pose.y)).collect();
+        let found = collisions(&self.scene, &self.plan);
+        let collisions: Vec<(f64, f64)> = found.iter().map(|found| (found.pose.x, found.pose.y)).collect();
         let title = &format!("{}: {title}", self.environment.name);
         let obstacles = &self.scene.obstacles;
         pictures.draw(&Picture { title, routes, obstacles, collisions: &collisions })

@@ -40,13 +40,13 @@ struct Task {
 }
 
 impl Task {
-    /// Whether an action that a script reports is part of it.
+    /// Returns whether an action that a script reports is part of it.
     fn includes(&self, moment: &Moment) -> bool {
         let number = moment.calls.first().map_or(moment.action, |call| call.action);
         self.movement == moment.movement && self.numbers.contains(&number)
     }
 
-    /// Whether it ends with the first action that ends in it.
+    /// Returns whether it ends with the first of its actions that ends.
     fn is_single(&self, moment: &Moment) -> bool {
         self.numbers.len() == 1 && moment.calls.is_empty()
     }
@@ -99,12 +99,12 @@ impl Progress {
         self.show_tasks();
     }
 
-    /// Prints what is worth knowing, above the bars.
+    /// Prints a note above the bars.
     pub(crate) fn note(&self, text: &str) {
         self.bars.suspend(|| output::note(text));
     }
 
-    /// Prints what is wrong, above the bars.
+    /// Prints a warning above the bars.
     pub(crate) fn warn(&self, text: &str, help: Option<&str>) {
         self.bars.suspend(|| output::warning(text, help));
     }

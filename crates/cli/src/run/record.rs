@@ -1,4 +1,4 @@
-//! A recorded run: a trace of ours, or a bag of ROS 2, whoever recorded it.
+//! A recorded run: a trace of ours, or a bag of ROS 2 from any recorder.
 
 use std::fs::{self, File};
 use std::io::{BufRead, BufReader};
@@ -11,7 +11,7 @@ use pydslrep_trace::TraceRecord;
 use crate::failure::Failure;
 use crate::inputs::read::read_failure;
 
-/// How other files begin that people may take for a record, with what to do.
+/// The first bytes of files that may be mistaken for a record, with the error and advice.
 const OTHERS: [(&[u8], &str, &str); 2] = [
     (
         b"SQLite format 3\0",
@@ -25,7 +25,7 @@ const OTHERS: [(&[u8], &str, &str); 2] = [
 #[derive(Debug)]
 pub(crate) struct Record {
     content: Content,
-    /// Whether it ends in the middle.
+    /// True if it ends in the middle.
     pub(crate) is_truncated: bool,
 }
 
@@ -65,7 +65,7 @@ impl Record {
         Self { is_truncated: self.is_truncated || next.is_truncated, ..self }
     }
 
-    /// The robots that it tells apart: names, or topics.
+    /// The robots that it distinguishes: names, or topics.
     pub(crate) fn robots(&self) -> Vec<String> {
         let mut names: Vec<String> = match &self.content {
             Content::Trace(records) => records.iter().map(|record| record.robot.clone()).collect(),
@@ -98,7 +98,7 @@ impl Record {
         from_zero(records)
     }
 
-    /// The steps of all robots that it tells apart, and their names.
+    /// The steps of all robots that it distinguishes, and their names.
     pub(crate) fn all_steps(self) -> (Vec<String>, Vec<TraceRecord>) {
         let names = self.robots();
         let mut topics: Vec<RobotTopics> = names.iter().map(|name| nameless(name)).collect();
@@ -138,7 +138,7 @@ fn files_of_bag(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     let mut bags: Vec<PathBuf> =
         files.iter().filter(|file| super::trace_file::is_bag(file)).cloned().collect();
     if bags.is_empty() {
-        // What else it is says its beginning.
+        // A bag in SQLite: its first bytes say so.
         bags.extend(files.into_iter().find(|file| file.extension().is_some_and(|ending| ending == "db3")));
     }
     Ok(bags)

@@ -1,4 +1,4 @@
-//! What a run reports: to people on the terminal, and to programs as events (`docs/run-events.md`).
+//! Reports of a run: to people on the terminal, and to programs as events (`docs/run-events.md`).
 
 use std::cell::RefCell;
 use std::fs::File;
@@ -15,7 +15,7 @@ use crate::run::outcome::Figures;
 /// The name of standard output, in place of a file's.
 pub(crate) const STANDARD_OUTPUT: &str = "-";
 
-/// Whether this is standard output, and no file.
+/// Returns whether a path stands for standard output.
 pub(crate) fn is_standard_output(path: &Path) -> bool {
     path.as_os_str() == STANDARD_OUTPUT
 }
@@ -70,13 +70,13 @@ impl Reporter {
         self.write(&RunEvent::Progress { t: None, robot: None, text: text.to_owned() });
     }
 
-    /// Warns of what does not keep the run from going on.
+    /// Reports a warning: the run continues.
     pub(crate) fn warn(&self, text: &str, help: Option<&str>) {
         output::warning(text, help);
         self.write(&RunEvent::Warning { text: text.to_owned(), help: help.map(str::to_owned) });
     }
 
-    /// Tells programs of a failure that people read of elsewhere.
+    /// Reports a failure to programs only; people read of it elsewhere.
     pub(crate) fn fail(&self, failure: &Failure) {
         if let Failure::Message { message, help, .. } = failure {
             let failure = RunFailure::new(FailureClass::Setup, message);
@@ -84,7 +84,7 @@ impl Reporter {
         }
     }
 
-    /// Tells programs that the program has errors, which people read on standard error.
+    /// Reports errors of the program to programs only; people read them on standard error.
     pub(crate) fn refuse(&self, message: &str) {
         self.write(&RunEvent::Failed(RunFailure::new(FailureClass::Program, message)));
     }
@@ -92,12 +92,12 @@ impl Reporter {
     /// Reports why a script ended.
     pub(crate) fn report_failure(&self, failure: &RunFailure) {
         let message = &failure.message;
-        if let Some(said) = &failure.output {
-            output::say(&format!("{said}\n"));
+        if let Some(text) = &failure.output {
+            output::say(&format!("{text}\n"));
         }
         match failure.class {
             FailureClass::Interrupted => output::say("interrupted\n"),
-            // Python has said more.
+            // Python's traceback says more.
             FailureClass::Crash if failure.output.is_some() => {}
             _ if message.contains('\n') => output::say(&format!("error: {message}\n")),
             _ => output::error(message, None),

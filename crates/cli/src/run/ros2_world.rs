@@ -28,18 +28,18 @@ const STOP_LIMIT: Duration = Duration::from_secs(5);
 /// At most this much of what it says is read, bytes.
 const MAX_STDERR: u64 = 1 << 16;
 
-/// What the node is like.
+/// Options of the node.
 #[derive(Debug, Clone)]
 pub(crate) struct Choice<'a> {
     /// The Python that can import rclpy.
     pub(crate) python: Option<&'a Path>,
     /// Simulated seconds per second.
     pub(crate) speed: f64,
-    /// Whether a script steps the world.
+    /// True if a script steps the world.
     pub(crate) lockstep: bool,
 }
 
-/// What moves the robots of a node.
+/// The engine that moves the robots of a node.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum World<'a> {
     /// The embedded simulator, with a port for each robot, and what it knows the node by.
@@ -106,13 +106,13 @@ impl Node {
 
     /// Resolves when the node has ended by itself, with the reason.
     pub(crate) async fn ended(&mut self) -> Failure {
-        let mut said = Vec::new();
+        let mut bytes = Vec::new();
         if let Some(stderr) = &mut self.child.stderr {
-            let _ = stderr.take(MAX_STDERR).read_to_end(&mut said).await;
+            let _ = stderr.take(MAX_STDERR).read_to_end(&mut bytes).await;
         }
-        let said = String::from_utf8_lossy(&said);
+        let text = String::from_utf8_lossy(&bytes);
         // A traceback ends with what went wrong.
-        let reason = said.lines().rfind(|line| !line.trim().is_empty()).unwrap_or("the node has ended");
+        let reason = text.lines().rfind(|line| !line.trim().is_empty()).unwrap_or("the node has ended");
         Failure::new(reason.strip_prefix("error: ").unwrap_or(reason))
     }
 

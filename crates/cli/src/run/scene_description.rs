@@ -1,4 +1,4 @@
-//! An environment with its scene as JSON: what `python/pydslrep_runtime/scene/description.py` reads.
+//! An environment with its scene as JSON, for `python/pydslrep_runtime/scene/description.py` reads.
 
 use pydslrep_kinematics::Pose;
 use pydslrep_scene::{Obstacle, Robot, Ros2Value, Scene, SensorKind, Shape, triangulate};

@@ -21,7 +21,7 @@ use crate::run::reporter::Reporter;
 /// Starts a module: the arguments are the folder of its package, and its name.
 const BOOT: &str = "import runpy, sys; sys.path.insert(0, sys.argv.pop(1)); runpy.run_module(sys.argv.pop(1), None, '__main__')";
 
-/// What carries out tasks on the scene of a simulator.
+/// The module that carries out tasks on the scene of a simulator.
 const SCENE_MODULE: &str = "pydslrep_runtime.scene";
 
 /// At most this much of an answer is read, bytes: more than the largest scene takes.
@@ -33,7 +33,7 @@ const MAX_STDERR: u64 = 1 << 20;
 /// A task that is interrupted undoes what it has begun within this time.
 const STOP_LIMIT: Duration = Duration::from_secs(5);
 
-/// How a traceback of Python begins.
+/// The first line of a Python traceback.
 const TRACEBACK: &str = "Traceback (most recent call last)";
 
 /// Characters of its last line.
@@ -44,7 +44,7 @@ const MAX_REASON: usize = 300;
 pub(crate) struct Interpreter<'a> {
     /// The user's choice.
     pub(crate) chosen: Option<&'a Path>,
-    /// Whether to hide progress.
+    /// True if progress is hidden.
     pub(crate) quiet: bool,
 }
 

@@ -25,7 +25,7 @@ pub(crate) const BOOT: &str = include_str!("../../python/boot.py");
 /// The environment variable with a run's token (`python/pydslrep_runtime/remote_api.py`).
 pub(crate) const TOKEN: &str = "PYDSLREP_RUN";
 
-/// How often the simulator is polled.
+/// The interval at which the simulator is polled.
 const POLL_PERIOD: Duration = Duration::from_millis(50);
 
 /// A script that is asked to end stops its robots within this time.
@@ -41,7 +41,7 @@ const NEW_PROCESS_GROUP: u32 = 0x200;
 /// At most this much of a script's standard error is kept, bytes.
 const MAX_STDERR: u64 = 1 << 20;
 
-/// What a run makes of the events of its script.
+/// The receiver of a script's events.
 pub(crate) struct Listener<'a> {
     simulator: Option<&'a Simulator>,
     driven: &'a mut Driven,
@@ -52,7 +52,7 @@ pub(crate) struct Listener<'a> {
 }
 
 impl<'a> Listener<'a> {
-    /// What the embedded simulator records, if the script uses it, goes to `driven`.
+    /// Makes a listener; the embedded simulator's records go to `driven`, if the script uses it.
     pub(crate) fn new(
         simulator: Option<&'a Simulator>,
         driven: &'a mut Driven,
@@ -62,7 +62,7 @@ impl<'a> Listener<'a> {
         Self { simulator, driven, progress, reporter, failure: None }
     }
 
-    /// Reads a line of the script; what is no event is not for this program.
+    /// Reads a line of the script; lines that are not events are ignored.
     fn read(&mut self, line: &str) {
         let Some(event) = RunEvent::parse(line) else { return };
         match &event {
@@ -77,7 +77,7 @@ impl<'a> Listener<'a> {
             RunEvent::Note { text } => self.progress.note(text),
             RunEvent::Warning { text, help } => self.progress.warn(text, help.as_deref()),
             RunEvent::Failed(failure) => {
-                // It is reported at the end, with what else the script has said.
+                // It is reported at the end, with the script's other output.
                 self.failure = Some(failure.clone());
                 return;
             }
@@ -89,8 +89,9 @@ impl<'a> Listener<'a> {
     }
 }
 
-/// How a script ended, by its exit status, the failure that it has reported, and what else it wrote to standard error.
-fn ending(status: ExitStatus, failure: Option<RunFailure>, said: String) -> Option<RunFailure> {
+/// Returns the failure of a script that has ended, from its exit status, the failure that it reported, and other text
+/// on standard error; `None` if it succeeded.
+fn ending(status: ExitStatus, failure: Option<RunFailure>, stderr: String) -> Option<RunFailure> {
     if status.success() {
         return None;
     }
@@ -99,7 +100,7 @@ fn ending(status: ExitStatus, failure: Option<RunFailure>, said: String) -> Opti
     }
     let failure = failure
         .unwrap_or_else(|| RunFailure::new(FailureClass::Crash, format!("the script ended with {status}")));
-    Some(RunFailure { output: Some(said).filter(|said| !said.is_empty()), ..failure })
+    Some(RunFailure { output: Some(stderr).filter(|text| !text.is_empty()), ..failure })
 }
 
 /// The user has ended the run.
@@ -110,13 +111,13 @@ pub(crate) fn interrupted() -> RunFailure {
 /// A script to start.
 pub(crate) struct Script {
     pub(crate) python: PathBuf,
-    /// Whether Python ignores modules beside the script and in the environment.
+    /// True if Python ignores modules beside the script and in the environment.
     pub(crate) isolated: bool,
     /// The folder of the package that it imports.
     pub(crate) runtime: PathBuf,
     /// A folder with modules that it imports if nothing else has them.
     pub(crate) modules: Option<PathBuf>,
-    /// What the simulator of the run knows the script by.
+    /// The token that identifies the script to the simulator of the run.
     pub(crate) token: Option<String>,
     /// The script and its arguments.
     pub(crate) arguments: Vec<OsString>,
@@ -148,7 +149,7 @@ pub(crate) async fn drive(
                 while let Ok(Some(line)) = timeout(STOP_LIMIT, next_line(&mut running.lines)).await {
                     listener.read(&line);
                 }
-                break ending(status, listener.failure.take(), running.said().await);
+                break ending(status, listener.failure.take(), running.stderr_text().await);
             }
             () = interrupts.next() => {
                 running.stop().await;
@@ -208,13 +209,13 @@ impl Stopwatch {
 struct Running {
     child: Child,
     lines: Lines<BufReader<ChildStdout>>,
-    /// Whether standard output is still open.
+    /// True while standard output is open.
     has_output: bool,
-    /// What it writes to standard error: its messages are events.
+    /// Its standard error; its messages are events.
     stderr: JoinHandle<String>,
     /// The script's input, which stays empty; where there are no signals, its end interrupts the script.
     #[cfg_attr(unix, expect(dead_code, reason = "it is there to be closed with this process"))]
-    lifeline: Option<ChildStdin>,
+    parent_pipe: Option<ChildStdin>,
 }
 
 impl Running {
@@ -231,7 +232,7 @@ impl Running {
         if let Some(token) = &script.token {
             command.env(TOKEN, token);
         }
-        // The end of its input tells it that this process is gone.
+        // The end of its input shows it that this process is gone.
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).kill_on_drop(true);
         // Ctrl-C reaches the script once: from this process.
         #[cfg(unix)]
@@ -239,7 +240,7 @@ impl Running {
         #[cfg(windows)]
         command.creation_flags(NEW_PROCESS_GROUP);
         let mut child = command.spawn().map_err(|error| failure(&error.to_string()))?;
-        let (Some(stdout), Some(stderr), Some(lifeline)) =
+        let (Some(stdout), Some(stderr), Some(parent_pipe)) =
             (child.stdout.take(), child.stderr.take(), child.stdin.take())
         else {
             return Err(failure("its output cannot be read"));
@@ -247,7 +248,7 @@ impl Running {
         let stderr = tokio::spawn(async move {
             let mut text = Vec::new();
             let mut all = stderr.take(MAX_STDERR);
-            // What was read before an error is still worth showing.
+            // Text read before an error is still worth showing.
             let _ = all.read_to_end(&mut text).await;
             let _ = tokio::io::copy(&mut all.into_inner(), &mut tokio::io::sink()).await;
             String::from_utf8_lossy(&text).trim_end().to_owned()
@@ -257,12 +258,12 @@ impl Running {
             lines: BufReader::new(stdout).lines(),
             has_output: true,
             stderr,
-            lifeline: Some(lifeline),
+            parent_pipe: Some(parent_pipe),
         })
     }
 
-    /// What it wrote to standard error, once it has ended.
-    async fn said(self) -> String {
+    /// Returns its output on standard error, once it has ended.
+    async fn stderr_text(self) -> String {
         // A process that the script left behind could keep the pipe open.
         let stderr = timeout(STOP_LIMIT, self.stderr).await;
         stderr.ok().and_then(Result::ok).unwrap_or_default()
@@ -289,6 +290,6 @@ impl Running {
 
     #[cfg(not(unix))]
     fn interrupt(&mut self) {
-        self.lifeline = None;
+        self.parent_pipe = None;
     }
 }

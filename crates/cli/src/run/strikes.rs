@@ -1,4 +1,4 @@
-//! What moving obstacles of the embedded simulator have run into.
+//! Warnings of robots that moving obstacles of the embedded simulator have run into.
 
 use std::collections::BTreeMap;
 
@@ -15,7 +15,7 @@ pub(crate) fn report(reporter: &Reporter, scene: &Scene, strikes: &[Strike]) {
     }
 }
 
-/// The warnings with what to do, in the order of time.
+/// The warnings with advice, in the order of time.
 fn warnings(scene: &Scene, strikes: &[Strike]) -> Vec<(String, String)> {
     let mut counts: BTreeMap<(usize, usize), usize> = BTreeMap::new();
     for strike in strikes {

@@ -1,4 +1,4 @@
-//! What `--trace` writes: JSON lines, or a bag of ROS 2 where the name of the file ends in `.mcap`.
+//! The file of `--trace`: JSON lines, or a bag of ROS 2 if the name of the file ends in `.mcap`.
 
 use std::path::{Path, PathBuf};
 
@@ -13,12 +13,12 @@ use crate::run::planned::Planned;
 /// The name of planned paths among the topics of a robot, as Nav2 has it.
 const PLAN: &str = "plan";
 
-/// Whether a trace of this name is a bag.
+/// Returns whether a trace of this name is a bag.
 pub(crate) fn is_bag(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mcap"))
 }
 
-/// What a trace of this name is.
+/// Returns the kind of a trace of this name.
 pub(crate) fn kind(path: &Path) -> Kind {
     if is_bag(path) { Kind::Bag } else { Kind::Trace }
 }
@@ -86,7 +86,7 @@ impl TraceFile {
     }
 }
 
-/// What the topics of a robot are called in a bag: as its driver calls them.
+/// Returns the names of a robot's topics in a bag: those that its driver uses.
 pub(crate) fn topics(robot: &Robot) -> RobotTopics {
     let names = robot.topics();
     let sensor = |sensor: &Sensor| SensorTopic {

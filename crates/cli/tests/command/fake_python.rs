@@ -23,7 +23,7 @@ case "$*" in
 esac
 "#;
 
-/// What a first run says while it prepares Python, where it is not in a terminal.
+/// The messages of a first run outside of a terminal while it prepares Python.
 const PREPARING: &str = "\
 preparing Python for the first run: creating a virtual environment
 preparing Python for the first run: installing the CoppeliaSim client library
@@ -53,7 +53,7 @@ fn tell(event: &RunEvent) -> String {
     format!("echo '{}'", event.line().trim_end())
 }
 
-/// A command that tells of a failure.
+/// A command that reports a failure.
 fn failed(class: FailureClass, message: &str) -> String {
     tell(&RunEvent::Failed(RunFailure::new(class, message)))
 }
@@ -206,7 +206,7 @@ fn what_cannot_be_asked_is_left_to_pip() {
 
 #[test]
 fn an_interrupt_stops_the_script() {
-    // The script tells that it runs, and then what has become of it. Shells run traps while they `wait`; in any other
+    // The script reports that it runs, and then how it ended. Shells run traps while they `wait`; in any other
     // call the signal and the call race.
     let running = Running::start(
         "tail -f /dev/null > /dev/null 2>&1 & trap 'kill $!; echo stopped > end; exit 130' INT; echo > started; wait",
@@ -265,7 +265,7 @@ fn a_script_that_does_not_listen_is_ended() {
     assert_eq!(running.event(), Event::Ended(Some(130)));
 }
 
-/// A run whose script has begun, watched by threads: whatever happens, one of them tells.
+/// A run whose script has begun, watched by threads that report its events.
 struct Running {
     place: Place,
     pid: rustix::process::Pid,

@@ -5,7 +5,7 @@ use crate::process::Place;
 #[test]
 fn the_program_is_clean_and_builds() {
     let place = Place::new();
-    // A word of the language, and a module of Python's, are good names too.
+    // A keyword, and the name of a Python module, are good names too.
     for name in ["patrol", "robots", "json", "rooms/hall_2"] {
         let done = place.run(&["new", name]);
         assert_eq!((done.code, done.err.as_str()), (Some(0), ""), "{name}");

@@ -1,4 +1,4 @@
-//! What somebody sees who starts with the command: a program in place of a command, and tables on a usual terminal.
+//! Mistakes of new users: a program in place of a command, and tables on a terminal of the usual width.
 
 use expect_test::expect;
 

@@ -41,7 +41,7 @@ fn what_the_world_decides_is_not_guessed() {
     assert_eq!(robot.get("possible"), None, "it has no bound");
 }
 
-/// What is known is as if nothing were possible.
+/// The known part is the same as if nothing were possible.
 #[test]
 fn what_may_be_driven_is_a_part_of_its_own() {
     let program = "\

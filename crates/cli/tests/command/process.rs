@@ -11,7 +11,7 @@ pub(crate) struct Place {
     folder: TempDir,
 }
 
-/// What came of a command.
+/// The result of a command.
 #[derive(Debug)]
 pub(crate) struct Done {
     pub(crate) code: Option<i32>,

@@ -17,7 +17,7 @@ fn fine(environment: &str) -> String {
     format!("{FINE}environment {environment} has {{ a }} robots with {{ m }} moves\n")
 }
 
-/// Codes with severities, as `check` tells them.
+/// Codes with severities, as `check` reports them.
 fn reported(place: &Place, arguments: &[&str]) -> Vec<String> {
     let done = place.run(&[&["check", "--format", "json"], arguments].concat());
     let problems: Vec<Value> = serde_json::from_str(&done.out).unwrap_or_else(|_| panic!("{}", done.err));

@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use crate::process::{Done, Place, paper, repository};
 
-/// How near robots have to come to their plan: metres and degrees.
+/// The tolerance between driven and planned poses: metres and degrees.
 const NEAR: f64 = 0.005;
 const TURNED: f64 = 0.5;
 
@@ -359,7 +359,7 @@ class Rover(Backend):
 fn robots_of_ones_own_need_no_simulator() {
     let place = Place::with("p/x.pyr", std::fs::read_to_string(paper("table2_two_wheels")).unwrap());
     place.write("p/my_robot.py", MY_ROBOT);
-    // What lies there cannot replace a module that the runtime imports.
+    // A file in the program's folder cannot replace a module that the runtime imports.
     place.write("p/asyncio.py", "raise SystemExit('replaced')");
     let own = ["run", "p/x.pyr", "--robot", "my_robot:Rover", "--picture", "x.svg", "--figures", "x.json"];
     let done: Done = place.command(&own).env("XDG_CACHE_HOME", place.path("cache")).output().unwrap().into();

@@ -6,7 +6,7 @@ use expect_test::{Expect, expect};
 
 use crate::process::Place;
 
-/// What it says once it is ready; then it is ended as by Ctrl+C.
+/// Checks the output up to its last line, then ends the command as Ctrl+C does.
 fn said(program: &str, arguments: &[&str], expected: &Expect) {
     let place = Place::with("my programs/x.pyr", program);
     let mut child = place.command(&[&["sim"], arguments].concat()).spawn().unwrap();

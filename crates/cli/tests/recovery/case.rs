@@ -3,7 +3,7 @@
 /// A file of cases.
 pub(crate) struct Group {
     parts: Vec<Part>,
-    /// What follows every program, so that only what a case is about is wrong.
+    /// The text after every program, which makes sure that only the subject of the case is wrong.
     following: String,
 }
 
@@ -91,7 +91,7 @@ impl Group {
 }
 
 impl Case {
-    /// How many problems it should have.
+    /// The expected number of problems.
     pub(crate) fn problems(&self) -> usize {
         let counted = self.title.rsplit_once(" (").and_then(|(_, end)| end.strip_suffix(" problems)"));
         match counted {

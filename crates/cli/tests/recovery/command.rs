@@ -28,7 +28,7 @@ impl Folder {
         std::fs::write(self.folder.path().join(name), program).unwrap();
     }
 
-    /// What a person sees, for each file with problems.
+    /// Returns the output for people, for each file with problems.
     pub(crate) fn shown(&self) -> BTreeMap<String, String> {
         let out = self.run(&[]);
         let mut shown: BTreeMap<String, String> = BTreeMap::new();

@@ -1,4 +1,4 @@
-//! What people see for broken programs: every case in `tests/recovery`, read, checked by the command and compared.
+//! Messages for broken programs: every case in `tests/recovery` is checked by the command and compared.
 //! `UPDATE_EXPECT=1` writes what the command says now; read it aloud before it is kept.
 
 #![allow(clippy::unwrap_used, clippy::panic)] // what the tests share is test code too
@@ -31,7 +31,7 @@ fn groups() -> Vec<(String, Group)> {
 /// All cases of a group in one folder, each in a file of its own.
 fn folder(group: &Group) -> (Folder, Vec<String>) {
     let folder = Folder::new();
-    // What imports may name.
+    // The files that imports name.
     for part in ["parts.pyr", "more.pyr"] {
         folder.write(part, "");
     }
@@ -74,7 +74,7 @@ fn each_mistake_is_one_problem() {
     assert!(wrong.is_empty(), "a title may end with (2 problems) where there are so many\n{wrong}");
 }
 
-/// What can be fixed without asking is gone afterwards, and nothing has come instead.
+/// After all safe fixes, the fixed problems are gone and no others have appeared.
 #[test]
 fn safe_fixes_leave_nothing_behind() {
     let (mut fixed, mut wrong) = (0, String::new());

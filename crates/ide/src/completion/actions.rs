@@ -189,7 +189,7 @@ pub(super) fn circle(context: &CursorContext<'_>) -> Vec<Completion> {
     completions(context, vec![Snippet::new("with radius …", "on a circle", insert)])
 }
 
-/// What ends an action or a `repeat`.
+/// Completions for the words that end an action or a `repeat`.
 pub(super) fn until(context: &CursorContext<'_>) -> Vec<Completion> {
     let defaults = Defaults::for_part(context);
     let snippet = |state| {
@@ -216,7 +216,7 @@ pub(super) fn rounds(context: &CursorContext<'_>) -> Vec<Completion> {
     completions(context, vec![Snippet::new("times { … }", "what is repeated", format!("times {BLOCK}"))])
 }
 
-/// What is done if the condition does not hold.
+/// Completions for the block that runs if the condition does not hold.
 pub(super) fn otherwise(context: &CursorContext<'_>) -> Vec<Completion> {
     let snippet =
         Snippet::new("else { … }", "what is done if the condition does not hold", format!("else {BLOCK}"));
@@ -264,7 +264,7 @@ mod tests {
         "#]].assert_eq(&shown);
     }
 
-    /// Those that are no actions of their own.
+    /// Clauses are not actions of their own.
     #[test]
     fn clauses_come_before_the_next_action() {
         let first =

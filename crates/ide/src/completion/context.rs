@@ -24,7 +24,7 @@ pub(super) struct CursorContext<'a> {
     pub(super) before: Vec<Token>,
     /// The tokens after that word up to the next entity, with their ranges in the file.
     after: Vec<Token>,
-    /// Whether no token of the entity follows that word.
+    /// True if no token of the entity follows the word at the cursor.
     pub(super) at_end: bool,
     /// The default speed in snippets, centimetres per second.
     pub(super) speed: f64,
@@ -34,7 +34,7 @@ pub(super) struct CursorContext<'a> {
     pub(super) written: SmolStr,
     /// The same in lower case.
     pub(super) typed: String,
-    /// Whether it begins with `^`.
+    /// True if the word begins with `^`.
     pub(super) is_escaped: bool,
 }
 
@@ -101,14 +101,14 @@ impl<'a> CursorContext<'a> {
         }
     }
 
-    /// Whether the cursor is in an action that begins with one of these keywords.
+    /// Returns whether the cursor is in an action that begins with one of these keywords.
     pub(super) fn statement_begins_with(&self, keywords: &[TokenKind]) -> bool {
         let statements = Statements::read(&self.before);
         let first = statements.as_ref().and_then(|statements| statements.latest().first());
         first.is_some_and(|(token, _)| keywords.contains(token))
     }
 
-    /// Whether the cursor is where `do` names its movement.
+    /// Returns whether the cursor is where `do` names its movement.
     pub(super) fn is_after_do(&self) -> bool {
         let statements = Statements::read(&self.before);
         matches!(statements.as_ref().map(Statements::latest), Some([.., (TokenKind::Do, _)]))
@@ -119,14 +119,14 @@ impl<'a> CursorContext<'a> {
         self.after.first().map(|(token, _)| *token)
     }
 
-    /// Whether the word at the cursor is the first on its line.
+    /// Returns whether the word at the cursor is the first on its line.
     pub(super) fn begins_line(&self) -> bool {
         let end = self.before.last().map_or(0, |(_, span)| self.start + span.end);
         self.database.slice(self.file, Span::new(end, self.word.start)).contains(['\n', '\r'])
     }
 
-    /// Whether only a name can come next: after `of`, `ip` and `do`, and in a list that is empty, ends with a comma, or has fewer
-    /// wheels than its robot needs.
+    /// Returns whether only a name can come next: after `of`, `ip` and `do`, and in a list that is empty, ends with a
+    /// comma, or has fewer wheels than its robot needs.
     pub(super) fn needs_name(&self) -> bool {
         let is_there = self.after.first().is_some_and(|(token, _)| token.is_name());
         let Some((last, _)) = self.before.last().filter(|_| !is_there) else { return false };
@@ -139,7 +139,7 @@ impl<'a> CursorContext<'a> {
         }
     }
 
-    /// Whether the cursor is in the wheel list of a robot that needs another wheel.
+    /// Returns whether the cursor is in the wheel list of a robot that needs another wheel.
     fn lacks_wheels(&self) -> bool {
         let Some(Entity::Robot(robot)) = self.tree else { return false };
         let in_wheels =
@@ -148,13 +148,14 @@ impl<'a> CursorContext<'a> {
         in_wheels && self.listed().len() < wanted
     }
 
-    /// Whether the word up to the cursor is a name that can be referred to here, even if it fits less well than others.
+    /// Returns whether the word up to the cursor is a name that can be referred to here, even if it fits less well than
+    /// others.
     pub(super) fn is_whole_name(&self, expected: &[Expected]) -> bool {
         let is_visible = |kind| self.database.resolve(self.file, kind, &self.written).entity().is_some();
         expected.iter().any(|expected| matches!(expected, Expected::ReferenceTo(kind) if is_visible(*kind)))
     }
 
-    /// Whether an import is allowed here: only other imports precede the cursor.
+    /// Returns whether an import is allowed here: only other imports precede the cursor.
     pub(super) fn may_import(&self) -> bool {
         let is_entity =
             |entity: &EntityRef<'_>| !matches!(entity.parse.entity, None | Some(Entity::Import(_)));

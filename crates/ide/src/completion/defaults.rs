@@ -36,16 +36,16 @@ pub(super) struct Layout {
     pub(super) names: Vec<String>,
 }
 
-/// How the last `move` was written.
+/// The form of the last `move`.
 pub(super) struct LastMove {
     pub(super) distance: Option<String>,
     pub(super) unit: Unit,
     pub(super) speed: Option<String>,
-    /// Whether it has no distance, but a condition.
+    /// True if it has a condition and no distance.
     pub(super) is_until: bool,
 }
 
-/// How the last `turn` was written.
+/// The form of the last `turn`.
 pub(super) struct LastTurn {
     pub(super) direction: Direction,
     pub(super) angle: Option<String>,
@@ -209,7 +209,7 @@ impl<'a> Defaults<'a> {
         names.take(MAX_LISTED).collect()
     }
 
-    /// Whether the action before the cursor is a `move`.
+    /// Returns whether the action before the cursor is a `move`.
     pub(super) fn follows_a_move(&self) -> bool {
         let actions = self.context.movement().map_or(&[][..], |movement| &movement.actions);
         let before = nested(actions).filter(|action| self.is_before(action)).last();
@@ -304,7 +304,7 @@ impl<'a> Defaults<'a> {
         last.unwrap_or_else(|| ("1.0".to_owned(), TokenKind::Meters.spelling().unwrap_or_default()))
     }
 
-    /// How often the last block is repeated, as written.
+    /// Returns the number of rounds of the last `repeat`, as written.
     pub(super) fn last_count(&self) -> String {
         let last = self.last_action(|action, written| match &action.kind {
             ActionKind::Repeat(Repeat { rounds: Some(Rounds::Times(count)), .. }) => written(count.span),
@@ -313,7 +313,7 @@ impl<'a> Defaults<'a> {
         last.unwrap_or_else(|| "4".to_owned())
     }
 
-    /// How long the last `wait` takes, as written.
+    /// Returns the duration of the last `wait`, as written.
     pub(super) fn last_time(&self) -> String {
         let last = self.last_action(|action, written| match &action.kind {
             ActionKind::Wait(wait) => written(wait.seconds.as_ref()?.span),
@@ -355,7 +355,7 @@ pub(super) fn robot_of<'a>(context: &CursorContext<'a>, movement: &Movement) -> 
     }
 }
 
-/// How many numbers are tried for a free name.
+/// The largest number tried for a free name.
 const MAX_NUMBERS: u32 = 1_000;
 
 /// The suggested name for the first entity of a kind.

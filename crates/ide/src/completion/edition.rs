@@ -30,20 +30,20 @@ pub(super) fn retain(context: &CursorContext<'_>, expected: Expected, items: &mu
     }
 }
 
-/// What of the entity is before the word at the cursor.
+/// Returns the entity's text before the word at the cursor.
 fn written<'a>(context: &'a CursorContext<'_>) -> &'a str {
     let end = context.before.last().map_or(0, |(_, span)| span.end);
     context.text.get(..end as usize).unwrap_or_default()
 }
 
-/// How much a text has that the article does not have.
+/// Returns the number of words and forms in a text that are not in the article's edition.
 fn extensions(text: &str) -> usize {
     let pieces = parse(text).into_iter();
     pieces.filter_map(|(_, parse)| Some(beyond_article(&parse.entity?, &parse.tokens).len())).sum()
 }
 
-/// Whether an item of a movement goes on with a word that came after the article. Where the statement has others already,
-/// it makes no difference to their number.
+/// Returns whether an item in a movement begins with a keyword that the article does not have. In a statement that has
+/// others already, the number of its extensions does not show that.
 fn begins_with_new_word(item: &Completion) -> bool {
     lex(&item.plain()).first().is_some_and(|(token, _)| TokenKind::CONTEXTUAL.contains(token))
 }
@@ -56,7 +56,7 @@ mod tests {
     use crate::fixture::{PARTS, at_cursor_in};
     use crate::{CompletionTrigger, completions};
 
-    /// What is offered in a movement in the article's edition, and after a bar what is not.
+    /// Checks what is offered in a movement in the article's edition and, after a bar, what is not.
     #[track_caller]
     fn check(program: &str, expected: &Expect) {
         let files = [("test.pyr", program), ("other.pyr", "sensor elsewhere")];

@@ -16,19 +16,19 @@ pub(crate) struct Word<'a> {
     pub(crate) before: &'a str,
     /// The part after the cursor.
     pub(crate) after: &'a str,
-    /// Whether only auto-closed characters follow it on its line, so that Enter may come next.
+    /// True if only auto-closed characters follow it on its line, so that Enter may come next.
     pub(crate) ends_line: bool,
 }
 
 impl Word<'_> {
-    /// Whether a text is complete but for a few letters.
+    /// Returns whether a text is complete but for a few letters.
     fn almost_completes(&self, text: &str) -> bool {
         let is_short = text.len() <= self.before.len() + MIN_SAVED_LETTERS;
         self.ends_line && self.after.is_empty() && is_short && starts_with(text, &self.before.to_lowercase())
     }
 }
 
-/// Whether only characters that editors close automatically follow on the line.
+/// Returns whether only characters that editors close automatically follow on the line.
 pub(crate) fn ends_line(following: impl Iterator<Item = char>) -> bool {
     let mut line = following.take_while(|character| !matches!(character, '\r' | '\n'));
     line.all(|character| " \t}]\"'".contains(character))
@@ -55,14 +55,14 @@ pub(crate) fn filter(items: Vec<Completion>, word: Word<'_>, trigger: Completion
     found.into_iter().map(|(_, item)| item).collect()
 }
 
-/// Whether the typed letters, in lower case, begin the label (`true`) or fit one of its subwords (`false`).
+/// Returns whether the typed letters, in lower case, begin the label (`true`) or fit one of its subwords (`false`).
 fn fit(item: &Completion, typed: &str) -> Option<bool> {
     let label = bare(&item.label);
     if starts_with(label, typed) {
         return Some(true);
     }
     if matches!(item.kind, CompletionKind::Keyword | CompletionKind::Snippet) {
-        // Whoever types a clause or a statement begins with its first word; other letters begin a name or another statement.
+        // Users type a clause or a statement from its first word; other letters begin a name or another statement.
         return None;
     }
     subwords(label).any(|word| has_letters(word, typed)).then_some(false)
@@ -90,7 +90,7 @@ fn subwords(name: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// Whether a word begins with the first typed letter and contains the others in this order, ignoring case.
+/// Returns whether a word begins with the first typed letter and contains the others in this order, ignoring case.
 fn has_letters(word: &str, typed: &str) -> bool {
     let mut wanted = typed.chars();
     let mut letters = word.chars().flat_map(char::to_lowercase);
@@ -117,7 +117,7 @@ pub(crate) fn filter_in_toml(
 }
 
 impl CompletionTrigger {
-    /// Whether the list opens in a TOML file: automatically where a value is expected and in a header.
+    /// Returns whether the list opens in a TOML file: automatically where a value is expected and in a header.
     pub(crate) fn opens_in_toml(self, cursor: &CursorContext) -> bool {
         match self {
             Self::Invoked | Self::Letter => true,

@@ -20,9 +20,9 @@ pub struct Completion {
     pub replace: Span,
     /// The text it inserts; with tab stops (`$1`, `${1:text}`, `$0`) if `is_snippet`.
     pub insert: String,
-    /// Whether `insert` has tab stops.
+    /// True if `insert` has tab stops.
     pub is_snippet: bool,
-    /// Whether the word at the cursor begins with `^`, so that editors must filter by `insert` rather than by `label`.
+    /// True if the word at the cursor begins with `^`: editors must then filter by `insert` rather than by `label`.
     pub is_escaped: bool,
     /// The file that it imports, for a name that is not visible yet.
     pub imports: Option<FileId>,

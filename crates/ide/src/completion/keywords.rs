@@ -35,7 +35,7 @@ pub(super) fn keyword(context: &CursorContext<'_>, word: TokenKind) -> Option<Co
     let page = keyword_page(if leads { last } else { word });
     let rank = match word {
         TokenKind::CloseBrace => Rank::Closing,
-        // A condition is more likely to go on.
+        // A condition is more likely to continue.
         TokenKind::OpenBrace if context.movement().is_some() => Rank::Closing,
         _ if matches_wheels(context, word) => Rank::Fitting,
         _ => Rank::Keyword,
@@ -59,7 +59,7 @@ fn detail(word: TokenKind, page: &KeywordPage) -> String {
     }
 }
 
-/// Whether a keyword is the drive type that the robot's wheels imply.
+/// Returns whether a keyword is the drive type that the robot's wheels imply.
 fn matches_wheels(context: &CursorContext<'_>, word: TokenKind) -> bool {
     let (Some(drive), Some(Entity::Robot(robot))) = (word.drive(), context.tree) else { return false };
     let names = robot.wheels.iter().flat_map(|list| &list.names);
@@ -67,7 +67,7 @@ fn matches_wheels(context: &CursorContext<'_>, word: TokenKind) -> bool {
     Drive::from_wheels(&mecanum) == Some(drive)
 }
 
-/// Whether the wheel of this name is a mecanum wheel; `None` if there is no such wheel.
+/// Returns whether the wheel of this name is a mecanum wheel; `None` if there is no such wheel.
 pub(super) fn is_mecanum(context: &CursorContext<'_>, name: &SmolStr) -> Option<bool> {
     let id = context.database.resolve(context.file, EntityKind::Wheel, name).entity()?;
     match context.database.tree(id)? {
@@ -124,7 +124,7 @@ fn continuation(context: &CursorContext<'_>, word: TokenKind) -> Continuation {
     continued
 }
 
-/// Whether a keyword of a statement brings the next one, although more of the movement follows.
+/// Returns whether a keyword of a statement inserts the next one as well, although more of the movement follows.
 fn leads_on(context: &CursorContext<'_>, word: TokenKind) -> bool {
     let next = match word {
         TokenKind::With => TokenKind::Radius,

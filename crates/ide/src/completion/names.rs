@@ -125,7 +125,7 @@ impl<'a> Wanted<'a> {
         names.into_iter().map(|(_, name)| name).collect()
     }
 
-    /// Whether an entity fits at the cursor.
+    /// Returns whether an entity fits at the cursor.
     fn fits(&self, database: &Database, id: EntityId) -> bool {
         match (&self.for_, database.tree(id)) {
             (For::Robot(Some(mecanum), _), Some(Entity::Wheel(wheel))) => wheel.mecanum == *mecanum,
@@ -140,7 +140,8 @@ impl<'a> Wanted<'a> {
         }
     }
 
-    /// How unlikely an entity is: wheels of another radius, names in use and imported names come later.
+    /// Returns the rank of an entity, lowest first: wheels of another radius, names in use and imported names come
+    /// later.
     fn cost(&self, context: &CursorContext<'_>, name: &SmolStr, id: EntityId) -> u8 {
         let tree = context.database.tree(id);
         let other_radius = match (&self.for_, tree) {
@@ -159,7 +160,7 @@ impl<'a> Wanted<'a> {
         4 * u8::from(other_radius) + 2 * u8::from(is_used || is_listed) + u8::from(is_imported)
     }
 
-    /// Whether the list at the cursor already has a name; a movement may be listed again.
+    /// Returns whether the list at the cursor already has a name; movements may be listed again.
     fn is_taken(&self, name: &SmolStr) -> bool {
         self.kind != EntityKind::Movement && self.listed.contains(name)
     }
@@ -278,7 +279,8 @@ fn order(context: &CursorContext<'_>, name: &str) -> (bool, bool) {
     (name != context.written, !starts_with(name, &context.typed))
 }
 
-/// Whether a name contains the typed letters in this order, ignoring case: every editor's own filter requires this.
+/// Returns whether a name contains the typed letters in this order, ignoring case: every editor's own filter requires
+/// this.
 fn is_subsequence(typed: &str, name: &str) -> bool {
     let mut letters = name.bytes();
     typed.bytes().all(|wanted| letters.any(|letter| letter.eq_ignore_ascii_case(&wanted)))
@@ -306,7 +308,7 @@ fn reference(context: &CursorContext<'_>, kind: EntityKind, name: &SmolStr) -> O
     })
 }
 
-/// Whether a visible name begins with the typed letters: then no others are offered.
+/// Returns whether a visible name begins with the typed letters: then no others are offered.
 fn begins_a_name(context: &CursorContext<'_>, wanted: &Wanted<'_>) -> bool {
     let may_stand_here = |name: &&SmolStr| {
         let seen = context.database.resolve(context.file, wanted.kind, name).entity();

@@ -12,7 +12,7 @@ use crate::document_links::summary;
 pub(super) struct PathAt {
     /// The text between the quotes.
     span: Span,
-    /// Whether the closing quote is missing.
+    /// True if the closing quote is missing.
     is_open: bool,
 }
 
@@ -103,7 +103,7 @@ pub(super) fn import_line(database: &Database, file: FileId, path: &str) -> (Spa
     }
 }
 
-/// Whether only comments precede an offset.
+/// Returns whether only comments precede an offset.
 fn is_first(database: &Database, file: FileId, offset: u32) -> bool {
     let comment = |token: &Token| token.0.is_comment();
     let mut before = database.entities(file).take_while(|entity| entity.span.start < offset);

@@ -1,11 +1,11 @@
-//! How the tests of completion ask for a list.
+//! Requests completion in tests.
 
 use expect_test::Expect;
 
 use super::{CompletionTrigger, completions};
 use crate::fixture::{PARTS, at_cursor, at_cursor_in};
 
-/// Compares the list that the user asks for with what is expected.
+/// Compares the list that the user asks for with the expected one.
 pub(super) fn check(fixture: &str, expected: &Expect) {
     let (database, position) = at_cursor(fixture);
     let rendered =

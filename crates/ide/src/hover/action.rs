@@ -56,7 +56,7 @@ fn find<'a>(
     action.blocks().into_iter().find_map(|block| find(driver, block, number, start, within))
 }
 
-/// What makes the end of an action unknown: of rounds, the first such action in them.
+/// Returns the action that makes the end of an action unknown: in rounds, the first such action.
 fn cause<'a>(driver: &Driver, action: &'a Action) -> &'a Action {
     let ActionKind::Repeat { body, .. } = &action.kind else { return action };
     let inner = body.iter().find(|inner| driver.drive(Pose::default(), &inner.kind).is_none());
@@ -90,7 +90,7 @@ impl Details<'_> {
         more.map_or_else(|| text.clone(), |more| format!("{text}\n\n{more}"))
     }
 
-    /// What is special about an action.
+    /// Returns the details that only some kinds of actions have.
     fn more(&self, action: &Action, leg: Option<&Leg>, start: Option<Pose>) -> Option<String> {
         match &action.kind {
             ActionKind::Repeat { count, body } => Some(self.rounds(*count, body)),
@@ -110,7 +110,7 @@ impl Details<'_> {
         }
     }
 
-    /// What the rounds of a block come to.
+    /// Describes the rounds of a block and their total.
     fn rounds(&self, count: u32, body: &[Action]) -> String {
         let way = self.way_of(body);
         let all = Way::default().and(way, f64::from(count));

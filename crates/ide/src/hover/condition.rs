@@ -147,12 +147,12 @@ fn facing(theta: f64) -> String {
     }
 }
 
-/// How a robot brakes that a condition stops at its highest speed.
+/// The braking of a robot at its highest speed, once a condition stops it.
 struct Stop {
     twist: Twist,
     /// Rim speed, metres per second.
     speed: f64,
-    /// How far the fastest rim moves for a metre of the robot, or a radian.
+    /// The distance that the fastest rim moves per metre, or per radian, of the robot.
     rim: f64,
 }
 
@@ -176,7 +176,8 @@ impl Stop {
         Some(Self { twist, speed, rim: model.fastest_rim(twist) })
     }
 
-    /// How far it goes on; `sensors` are those that detect something then, at most at the distance `within`.
+    /// Describes how far the robot continues; `sensors` are those that detect something then, at most at the distance
+    /// `within`.
     fn describe(&self, sensors: &[&Sensor], within: Option<f64>) -> String {
         let (ramp, step) = self.rim_way();
         let speed = number(self.speed * 100.0, 3);
@@ -190,7 +191,7 @@ impl Stop {
         )
     }
 
-    /// How far the fastest rim moves along its ramp, and in the step before it, metres.
+    /// Returns the distances that the fastest rim moves while braking, and in the step before, in metres.
     fn rim_way(&self) -> (f64, f64) {
         (self.speed * self.speed / (2.0 * motion::RIM_ACCELERATION), self.speed * motion::STEP)
     }
@@ -208,7 +209,7 @@ impl Stop {
         format!("{degrees}° or {}", centimetres(amount * self.twist.vx.abs()))
     }
 
-    /// How far away an obstacle is then that the robot drove straight towards.
+    /// Describes the remaining distance to an obstacle that the robot drove straight towards.
     fn clearance(&self, sensors: &[&Sensor], within: Option<f64>, way: f64) -> String {
         if self.twist.omega != 0.0 {
             return String::new();

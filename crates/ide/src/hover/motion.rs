@@ -25,7 +25,7 @@ pub(super) fn movement(database: &Database, id: EntityId) -> Option<String> {
     ))
 }
 
-/// How far the last of some movements drives, how long it takes and where it ends. The others are those that it does.
+/// Describes the last of some movements: its length, duration and end pose. The others are those that it does.
 pub(super) fn facts(robot: &Robot, movements: &[Movement]) -> Option<String> {
     let path = plan_movement(robot, movements).ok()?;
     let summary = summary_of_movement(robot, movements).ok()?;
@@ -96,7 +96,7 @@ fn row(environment: &Environment, plan: &Plan, group: usize, run: usize, movemen
     Some(format!("| {} | {} | `{}` | `{}` |\n", cell(start), cell(end), robot.name, movement.name))
 }
 
-/// Whether the end time of a run is planned.
+/// Returns whether the end time of a run is planned.
 fn ends(path: &RobotPath, group: usize, run: usize) -> bool {
     path.unknown_after.is_none_or(|cause| (cause.group, cause.run) > (group, run))
 }

@@ -1,4 +1,4 @@
-//! How far actions drive and turn.
+//! The distances and angles that actions drive.
 
 use std::fmt;
 
@@ -6,7 +6,7 @@ use pydslrep_analysis::environment::{Action, ActionKind, Movement};
 
 use super::format::number;
 
-/// How far a movement drives and turns: metres and degrees, what only the world decides not counted.
+/// The distance and the angle that a movement drives, in metres and degrees, without parts that only the world decides.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Way {
     length: f64,

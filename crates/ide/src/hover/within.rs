@@ -1,4 +1,4 @@
-//! What decides whether an action in a block is done, and how often.
+//! The conditions and repetitions that an action is nested in.
 
 /// The blocks that an action is in.
 #[derive(Debug, Clone, Copy, Default)]

@@ -13,7 +13,7 @@ use super::steps::{Step, StepKind};
 /// The plan of one step.
 #[derive(Debug)]
 pub(super) struct Planned<'a> {
-    /// What is planned; `None` for invalid code between actions.
+    /// The planned action; `None` for invalid code between actions.
     pub(super) action: Option<&'a ast::Action>,
     pub(super) kind: Arc<StepKind>,
     /// Its leg; `None` if the end depends on the world or on invalid code. The poses are only valid for [`Start::At`].
@@ -57,7 +57,7 @@ pub(super) struct Planner<'p> {
 }
 
 impl Planner<'_> {
-    /// The plan of some steps, what is to be known of them next time, and where they end.
+    /// Returns the plan of some steps, their known steps for the next time, and their end.
     pub(super) fn plan<'a>(
         &mut self,
         steps: Vec<Step<'a>>,
@@ -100,7 +100,7 @@ impl Planner<'_> {
         start: Start,
     ) -> (Vec<Vec<Planned<'a>>>, Vec<Vec<KnownStep>>, Vec<Start>) {
         if blocks.is_empty() {
-            // What is known of blocks that are not in sight stays.
+            // Blocks that are not in sight keep their known steps.
             return (Vec::new(), known.to_vec(), Vec::new());
         }
         let (mut planned, mut remembered, mut ends) = (Vec::new(), Vec::new(), Vec::new());
@@ -149,7 +149,7 @@ impl Planner<'_> {
     }
 }
 
-/// Whether a step is only more of the invalid code before it: how many steps that makes changes with every key.
+/// Returns whether a step only continues the invalid code before it: the number of such steps changes with every key.
 fn is_more(before: Option<&StepKind>, kind: &StepKind) -> bool {
     matches!((before, kind), (Some(StepKind::Broken), StepKind::Broken))
 }
@@ -183,7 +183,7 @@ impl<'a> Former<'a> {
         self.known.get(if place <= self.head { place } else { self.unchanged(place)? })?.from
     }
 
-    /// What is known of the blocks at a place; those of a changed step are at the same one.
+    /// Returns the known blocks of a step; those of a changed step are at the same place.
     fn blocks_of(&self, place: usize) -> &'a [Vec<KnownStep>] {
         let known = self.known.get(self.unchanged(place).unwrap_or(place));
         known.map_or(&[], |known| known.blocks.as_slice())

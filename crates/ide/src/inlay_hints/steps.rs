@@ -18,13 +18,13 @@ pub(super) struct Step<'a> {
     pub(super) blocks: Vec<Vec<Step<'a>>>,
 }
 
-/// What a step is, apart from its place.
+/// The content of a step, without its place.
 #[derive(Debug)]
 pub(super) enum StepKind {
     /// A valid action.
     Action(ActionKind),
-    /// A valid action that does other movements. They have numbers that change with what else is done, so it is known again
-    /// by its text.
+    /// A valid action that does other movements. The numbers of those change with other edits, so it is recognised by its
+    /// text.
     Calling(ActionKind, String),
     /// Invalid code, also in the blocks of an action.
     Broken,
@@ -51,7 +51,7 @@ impl PartialEq for StepKind {
     }
 }
 
-/// What the steps of a movement are made from.
+/// The source of a movement's steps.
 pub(super) struct Body<'a> {
     pub(super) database: &'a Database,
     pub(super) entity: EntityRef<'a>,
@@ -98,7 +98,7 @@ impl<'a> Body<'a> {
         errors.filter(move |span| part.start <= span.start && span.start <= part.end)
     }
 
-    /// Whether code that is no action, or the words before a block, could not be understood in a block of this action.
+    /// Returns whether the blocks of an action, or the words before a block, contain code that could not be parsed.
     fn has_errors_in_blocks(&self, action: &ast::Action) -> bool {
         let mut errors = action.blocks().flat_map(|block| self.errors(block.span));
         errors.any(|error| {
@@ -112,7 +112,7 @@ fn covers(whole: Span, part: Span) -> bool {
     whole.touches(part.start) && whole.touches(part.end)
 }
 
-/// Whether an action does another movement, or an action in its blocks.
+/// Returns whether an action, or one in its blocks, does another movement.
 pub(super) fn calls(action: &ast::Action) -> bool {
     matches!(action.kind, ast::ActionKind::Do(_))
         || action.blocks().any(|block| block.actions.iter().any(calls))

@@ -55,7 +55,7 @@ fn lengths_of<'a>(action: &'a Action) -> Vec<Length<'a>> {
     own.into_iter().chain(near).map(length).collect()
 }
 
-/// What of an action is around a number in it, without its blocks.
+/// Returns the part of an action around a number in it, without the action's blocks.
 fn words(action: &Action, number: &Number) -> Span {
     let ActionKind::If(choice) = &action.kind else {
         let end = action.blocks().next().map_or(action.span.end, |block| block.span.start);

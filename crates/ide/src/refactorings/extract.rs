@@ -62,7 +62,7 @@ impl<'a> Parts<'a> {
         Ok((new, edits))
     }
 
-    /// What does the new movement, in the place of its actions.
+    /// Returns the `do` action that replaces the extracted actions.
     fn call(&self, new: &str, cut: Span) -> String {
         let removed = self.row.selection.text(cut);
         let blank = &removed[..removed.len() - removed.trim_start().len()];
@@ -78,7 +78,7 @@ impl<'a> Parts<'a> {
         format!("{before}{word} {new}{gap}")
     }
 
-    /// What is after the last action of a row goes with it.
+    /// Returns the end of the cut: text after the last action of a row is moved along.
     fn cut_end(&self) -> u32 {
         if self.end < self.row.actions.len() {
             self.row.bound(self.end)

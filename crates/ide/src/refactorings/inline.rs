@@ -1,5 +1,5 @@
-//! Inline a movement: its actions in the place of a `do`. The movement stays where it is; if nobody uses it any more, a hint says
-//! so and removes it.
+//! Inline a movement: replaces a `do` by the movement's actions. The movement stays; if nothing uses it any more, a hint
+//! offers to remove it.
 
 use pydslrep_analysis::{Database, EntityId, EntityRef};
 use pydslrep_syntax::ast::{Action, Entity, Movement, Name};
@@ -72,8 +72,8 @@ impl<'a> Done<'a> {
         let mut used = references.filter(|(_, name)| self.body.start <= name.span.start);
         let resolve = |file, kind, name: &Name| self.database.resolve(file, kind, &name.text).entity();
         let changes = |kind, name| {
-            let meant = resolve(there, kind, name);
-            here != there && (meant.is_none() || meant != resolve(here, kind, name))
+            let intended = resolve(there, kind, name);
+            here != there && (intended.is_none() || intended != resolve(here, kind, name))
         };
         used.find(|(kind, name)| changes(*kind, *name)).map(|(_, name)| name)
     }
@@ -90,7 +90,7 @@ fn row_robot(row: &Row<'_>) -> Option<EntityId> {
     database.resolve(file, EntityKind::Robot, &row.movement.robot.as_ref()?.text).entity()
 }
 
-/// Whether a movement does itself or another one, perhaps by way of others.
+/// Returns whether a movement does itself or another one, directly or through others.
 fn does(database: &Database, movement: EntityId, other: EntityId) -> bool {
     let mut seen = FxHashSet::default();
     let mut open = vec![movement];

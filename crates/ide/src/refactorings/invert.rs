@@ -44,7 +44,7 @@ fn unavailable(reason: &str) -> Refactoring {
     Refactoring::no_rewrite(TITLE, reason)
 }
 
-/// Whether the selection is at the last branch, or there is no other.
+/// Returns whether the selection is at the last branch, or that is the only one.
 fn is_chosen(selection: &Selection<'_>, choice: &If, branch: &Branch, then: &Block) -> bool {
     let from_here = selection.range.start >= branch.span.start;
     choice.branches.len() == 1

@@ -1,4 +1,5 @@
-//! What an action does, as a text that is equal for equal actions: units, defaults, commas and comments make no difference.
+//! The meaning of an action as a text that is equal for equal actions: units, defaults, commas and comments make no
+//! difference.
 
 use std::fmt::Write as _;
 
@@ -9,7 +10,7 @@ use pydslrep_syntax::ast::{
     Wait,
 };
 
-/// What an action does; `None` where something of it is missing.
+/// Returns the meaning of an action; `None` if part of it is missing.
 pub(super) fn meaning(action: &Action) -> Option<String> {
     let mut words = Words::default();
     words.action(action)?;

@@ -40,8 +40,8 @@ impl Selection<'_> {
         self.comments(range).map(|comment| self.text(comment) + "\n").collect()
     }
 
-    /// What is to be in the place of some text: another one, after comments that are kept on lines of their own. A comment at
-    /// its end must not swallow what follows.
+    /// Returns the replacement of a range: `text`, after comments that are kept on lines of their own. A comment at its
+    /// end must not swallow what follows.
     pub(super) fn in_place_of(&self, span: Span, comments: &str, text: &str) -> (Span, String) {
         let text = text.trim();
         let end = if lex(text).last().is_some_and(|(token, _)| token.ends_line()) { "\n" } else { "" };

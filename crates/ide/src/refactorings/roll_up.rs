@@ -12,7 +12,7 @@ use super::rows::Row;
 use super::{Refactoring, Selection};
 
 /// The longest group that is looked for, in actions.
-const LONGEST_GROUP: usize = 100;
+const MAX_GROUP: usize = 100;
 
 /// The refactoring for the longest run of equal groups among the selected actions, or around the cursor: in the innermost
 /// block that has one.
@@ -27,9 +27,9 @@ pub(super) fn roll_up(selection: &Selection<'_>) -> Option<Refactoring> {
 /// Groups of actions that do the same, one after the other.
 struct Run {
     first: usize,
-    /// How many actions a group has.
+    /// The number of actions in a group.
     period: usize,
-    /// How many groups there are.
+    /// The number of groups.
     count: usize,
 }
 
@@ -56,7 +56,7 @@ fn longest_run(row: &Row<'_>) -> Option<Run> {
 struct Search<'a> {
     actions: &'a [Action],
     part: Range<usize>,
-    /// What each action does, as far as somebody asked.
+    /// The meaning of each action, computed on demand.
     meanings: Vec<OnceCell<Option<String>>>,
 }
 
@@ -69,7 +69,7 @@ impl<'a> Search<'a> {
     /// The longest run, of those with the smallest groups the first; with an action, only runs that include it.
     fn longest(&self, around: Option<usize>) -> Option<Run> {
         let mut longest: Option<Run> = None;
-        for period in 1..=LONGEST_GROUP.min(self.part.len() / 2) {
+        for period in 1..=MAX_GROUP.min(self.part.len() / 2) {
             for equal in self.stretches(period, around) {
                 let Some(run) = as_run(&equal, period, around) else { continue };
                 if longest.as_ref().is_none_or(|longest| run.len() > longest.len()) {
@@ -145,7 +145,7 @@ struct Remark {
     round: usize,
     /// Which action of the group it belongs to.
     action: usize,
-    /// Whether it is before that action, not in or after it.
+    /// True if it is before that action, not in or after it.
     before: bool,
 }
 
@@ -195,14 +195,14 @@ impl Row<'_> {
 }
 
 impl Remarks {
-    /// Whether the comments above the first two groups are the same: then they are about the group. Otherwise those above the
-    /// first are about all of them.
+    /// Returns whether the comments above the first two groups are the same: then they are about the group. Otherwise
+    /// those above the first are about all of them.
     fn are_headed_alike(&self) -> bool {
         let above = |round: usize| self.texts(move |remark| remark.round == round, 0, true);
         above(0).next().is_some() && above(0).eq(above(1))
     }
 
-    /// What later groups have at a place, each once, and the first does not.
+    /// Returns the comments at a place that later groups have and the first does not, each once.
     fn new_at(&self, action: usize, before: bool) -> impl Iterator<Item = &str> {
         let mut known: Vec<&str> = self.texts(|remark| remark.round == 0, action, before).collect();
         let later = self.texts(|remark| remark.round > 0, action, before);

@@ -15,7 +15,7 @@ pub(super) struct Row<'a> {
     /// From brace to brace.
     pub(super) braces: Span,
     pub(super) actions: &'a [Action],
-    /// How many blocks it is in.
+    /// The number of blocks around it.
     pub(super) depth: usize,
 }
 
@@ -72,7 +72,7 @@ impl<'a> Row<'a> {
         self.line_end(gap).unwrap_or_else(|| self.after_comments(gap))
     }
 
-    /// What is between an action, or the brace, and the next one.
+    /// Returns the gap between an action, or the opening brace, and the next action.
     pub(super) fn gap(&self, index: usize) -> Span {
         let before = index.checked_sub(1).and_then(|before| self.actions.get(before));
         let start = before.map_or(self.braces.start + 1, |action| action.span.end);
@@ -93,13 +93,13 @@ impl<'a> Row<'a> {
         self.selection.comments(gap).last().map_or(gap.start, |comment| comment.end)
     }
 
-    /// Whether actions may be in so many more blocks than the row is.
+    /// Returns whether actions can be nested `more` blocks deeper than the row is.
     pub(super) fn has_room(&self, actions: &[Action], more: usize) -> bool {
         self.depth + more + height(actions) <= MOST_BLOCKS
     }
 }
 
-/// How many blocks are one in another.
+/// Returns the depth of nested blocks.
 fn height(actions: &[Action]) -> usize {
     let inner = |action: &Action| action.blocks().map(|block| 1 + height(&block.actions)).max();
     actions.iter().filter_map(inner).max().unwrap_or(0)

@@ -6,7 +6,7 @@ use pydslrep_syntax::ast::{ActionKind, Block, Repeat, Rounds, nested};
 use super::{Refactoring, Selection};
 
 /// More statements than these are not for people.
-const MOST_ACTIONS: usize = 200;
+const MAX_ACTIONS: usize = 200;
 
 /// The refactoring for the chosen `repeat`.
 pub(super) fn unroll(selection: &Selection<'_>) -> Option<Refactoring> {
@@ -21,7 +21,7 @@ pub(super) fn unroll(selection: &Selection<'_>) -> Option<Refactoring> {
     }
     let title = format!("unroll `repeat {rounds} times`");
     let Some(rounds) = bounded(rounds, block) else {
-        let reason = format!("that would be more than {MOST_ACTIONS} actions");
+        let reason = format!("that would be more than {MAX_ACTIONS} actions");
         return Some(Refactoring::no_rewrite(title, reason));
     };
     let head = selection.comment_lines(Span::new(action.span.start, block.span.start));
@@ -36,7 +36,7 @@ fn bounded(rounds: f64, block: &Block) -> Option<usize> {
     let statements = nested(&block.actions).count();
     let is_it =
         |count: &usize| u32::try_from(*count).is_ok_and(|count| f64::from(count).total_cmp(&rounds).is_eq());
-    (1..=MOST_ACTIONS / statements.max(1)).find(is_it)
+    (1..=MAX_ACTIONS / statements.max(1)).find(is_it)
 }
 
 #[cfg(test)]

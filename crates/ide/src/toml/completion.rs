@@ -10,8 +10,8 @@ use crate::completion::Rank;
 use crate::completion::filter::filter_in_toml;
 use crate::{Completion, CompletionKind, CompletionTrigger, Documentation};
 
-/// What fits at an offset. Keys and tables that are already there do not, except for tables that can appear any number of
-/// times.
+/// Returns the keys, tables and values that fit at an offset. Keys and tables that are already there do not, except for
+/// tables that can appear any number of times.
 pub fn toml_completions(
     file: TomlFile<'_>,
     text: &str,
@@ -87,7 +87,7 @@ impl Offers {
         }
     }
 
-    /// Whether a table is there and cannot appear again.
+    /// Returns whether a table exists and cannot appear again.
     fn is_taken(&self, header: &Header) -> bool {
         let name = header.parts.join(".");
         // The header of a sensor contains the name of its robot, but is not the robot's.
@@ -113,7 +113,7 @@ impl Offers {
         self.headers.iter().filter(fits).map(move |header| (as_key(&header.parts[depth]), header.table))
     }
 
-    /// What is missing of a header after an open bracket; `None` if it does not fit.
+    /// Returns the completion for the rest of a header after an open bracket; `None` if it does not fit.
     fn in_brackets(&self, header: &Header) -> Option<Completion> {
         let Slot::Table { outer, is_each, is_closed, .. } = &self.cursor.slot else { return None };
         let depth = outer.matches('.').count();
@@ -194,7 +194,7 @@ impl Offers {
 }
 
 impl Header {
-    /// Whether these are its first parts, each with a dot after it.
+    /// Returns whether `outer` consists of its first parts, each followed by a dot.
     fn begins_with(&self, outer: &str) -> bool {
         let name = format!("{}.", self.parts.join("."));
         name.starts_with(outer)

@@ -12,13 +12,13 @@ use super::statements::statement;
 /// A fix with its problem.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct KeyFix {
-    /// What it fixes.
+    /// The problem that it fixes.
     pub problem: Problem,
-    /// What it does, in words.
+    /// Its title.
     pub title: String,
-    /// What it replaces in the TOML file, in the order of the text, and with what.
+    /// The edits of the TOML file, in the order of the text.
     pub edits: Vec<(Span, String)>,
-    /// What it changes in programs.
+    /// The edits of programs.
     pub program: Vec<Edit>,
 }
 
@@ -88,7 +88,7 @@ impl UnknownName<'_> {
         known.filter(is_free).take(MAX_NAMES).cloned().collect()
     }
 
-    /// Whether a name of the scene is in the same table as the unknown one.
+    /// Returns whether a name of the scene is in the same table as the unknown one.
     fn is_beside(&self, other: &Written) -> bool {
         let is_robot = self.unknown.kind == EntityKind::Robot;
         other.kind == self.unknown.kind && (is_robot || other.robot == self.unknown.robot)
@@ -168,7 +168,7 @@ mod tests {
     use super::*;
     use crate::fixture::applied;
 
-    /// What is wrong, the titles of the fixes at the cursor, and the text after each, which has fewer problems.
+    /// Checks the problem, the titles of the fixes at the cursor, and the text after each, which has fewer problems.
     fn fixes(file: TomlFile<'_>, fixture: &str, expected: &Expect) {
         let (text, offset) = at_cursor(fixture);
         let before = file.problems(&text);

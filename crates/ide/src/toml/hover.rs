@@ -1,11 +1,11 @@
-//! Hover in a TOML file: what the key or the table under the cursor means.
+//! Hover in a TOML file: the meaning of the key or the table under the cursor.
 
 use pydslrep_schema::{Item, name_parts};
 
 use super::TomlFile;
 use crate::Hover;
 
-/// What there is to say about the name at an offset.
+/// Returns the hover for the name at an offset.
 pub fn toml_hover(file: TomlFile<'_>, text: &str, offset: u32) -> Option<Hover> {
     let part = name_parts(text).into_iter().find(|part| part.span.touches(offset))?;
     let path: Vec<&str> = part.name.split('.').collect();

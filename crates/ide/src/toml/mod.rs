@@ -29,7 +29,7 @@ use pydslrep_schema::{Names, Problem, Schema};
 use pydslrep_syntax::EntityKind;
 use pydslrep_syntax::ast::{Entity, Name, References};
 
-/// What kind of TOML file a text is, with what its names can refer to.
+/// The kind of a TOML file, with the declarations that its names can refer to.
 #[derive(Clone, Copy)]
 pub enum TomlFile<'a> {
     /// A `pydslrep.toml`.
@@ -39,7 +39,7 @@ pub enum TomlFile<'a> {
 }
 
 impl TomlFile<'_> {
-    /// What is wrong with a text, in its order.
+    /// Returns the problems of a text, in its order.
     pub fn problems(self, text: &str) -> Vec<Problem> {
         match self {
             Self::Settings => Config::from_toml(text).1,

@@ -80,7 +80,7 @@ fn symbol(text: &str, parts: &[NamePart], part: &NamePart, table: &Table, full: 
     }
 }
 
-/// What an obstacle's key `name` is set to.
+/// Returns the value of an obstacle's key `name`.
 fn name_of_obstacle<'t>(text: &'t str, parts: &[NamePart], header: &NamePart) -> Option<&'t str> {
     let key = format!("{}.name", header.name);
     let key = parts.iter().find(|part| part.section == header.section && part.name == key)?;

@@ -1,7 +1,7 @@
 //! Code actions of a program that create the scene of an environment, or add what is missing in it: the robots of the
 //! environment at the cursor, the robot there, or the sensor.
 //!
-//! What they write is what holds in an empty scene anyway, so the robots drive as before until somebody changes it.
+//! They write what already holds in an empty scene, so the robots drive as before until somebody changes it.
 
 use std::fmt::Write;
 
@@ -25,15 +25,15 @@ pub struct SceneAction {
     pub program: FileId,
     /// The environment in it.
     pub environment: SmolStr,
-    /// What is added, in words: `rover`; nothing where the scene is created.
+    /// The names of the added things, such as `rover`; empty if the scene is created.
     pub added: Vec<String>,
     /// Where in the text of the scene; `None` if there is no scene yet.
     pub span: Option<Span>,
-    /// What is written there.
+    /// The text to insert.
     pub text: String,
 }
 
-/// What can be done about the scenes of the declaration at a position, in the order of environments.
+/// Returns the edits that create or complete scenes of the declaration at a position, in the order of environments.
 pub fn scene_actions(database: &Database, position: FilePosition) -> Vec<SceneAction> {
     let Some(at) =
         entities_at(database, position).into_iter().find(|entity| body(entity).touches(position.offset))
@@ -69,8 +69,8 @@ fn users(database: &Database, id: EntityId) -> Vec<EntityId> {
     };
     let user_kind = if kind == EntityKind::Robot { EntityKind::Environment } else { EntityKind::Robot };
     let files = std::iter::once(home).chain(database.importing(home));
-    let meant = files.filter(|file| database.resolve(*file, kind, name).entity() == Some(id));
-    let users = meant.flat_map(|file| database.users(file, kind, name).iter().copied());
+    let resolving = files.filter(|file| database.resolve(*file, kind, name).entity() == Some(id));
+    let users = resolving.flat_map(|file| database.users(file, kind, name).iter().copied());
     users.filter(|id| database.tree(*id).and_then(Entity::kind) == Some(user_kind)).collect()
 }
 

@@ -33,7 +33,7 @@ pub struct NameInScene {
     pub declared: FilePosition,
 }
 
-/// What a rename changes beside programs.
+/// The changes of a rename outside of programs.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct SceneChanges {
     /// Places in scenes, with their new text.
@@ -72,9 +72,9 @@ pub fn name_in_scene(
 pub fn highlights_in_scene(database: &Database, environment: EntityId, text: &str, offset: u32) -> Vec<Span> {
     let names = written_names(text);
     let Some(at) = names.iter().find(|written| written.span.touches(offset)) else { return Vec::new() };
-    let meant = target(database, environment, at);
+    let intended = target(database, environment, at);
     let is_same = |other: &&Written| {
-        (other.kind, &other.name) == (at.kind, &at.name) && target(database, environment, other) == meant
+        (other.kind, &other.name) == (at.kind, &at.name) && target(database, environment, other) == intended
     };
     names.iter().filter(is_same).map(|written| written.span).collect()
 }
@@ -84,7 +84,7 @@ pub fn mentions_in_scenes(database: &Database, position: FilePosition) -> Vec<Sc
     referent_at(database, position).map_or_else(Vec::new, |referent| mentions(database, &referent))
 }
 
-/// What renaming the name at a position of a program changes in scenes.
+/// Returns the changes in scenes when the name at a position of a program is renamed.
 ///
 /// # Errors
 ///
@@ -161,13 +161,14 @@ fn mentions(database: &Database, referent: &Referent) -> Vec<ScenePlace> {
             continue;
         }
         let Some(id) = environment_called(database, program, environment) else { continue };
-        let meant = written_names(text).into_iter().filter(|written| means(database, id, written, referent));
-        places.extend(meant.map(|written| place(written.span)));
+        let mentions =
+            written_names(text).into_iter().filter(|written| means(database, id, written, referent));
+        places.extend(mentions.map(|written| place(written.span)));
     }
     places
 }
 
-/// Whether a name in the scene of an environment refers to what a name of a program does.
+/// Returns whether a name in the scene of an environment has the same declaration as a name of a program.
 fn means(database: &Database, environment: EntityId, written: &Written, referent: &Referent) -> bool {
     let is_home = |id| database.file_of(id) == Some(referent.home);
     written.kind == referent.kind
@@ -175,7 +176,7 @@ fn means(database: &Database, environment: EntityId, written: &Written, referent
         && target(database, environment, written).is_some_and(is_home)
 }
 
-/// What a name in the scene of an environment refers to.
+/// Returns the declaration of a name in the scene of an environment.
 fn target(database: &Database, environment: EntityId, written: &Written) -> Option<EntityId> {
     let home = database.file_of(environment)?;
     let robot = database.resolve(home, EntityKind::Robot, &written.robot).entity()?;
@@ -304,7 +305,7 @@ mod tests {
         assert_eq!(mention(&[("/w/a.pyr", &movement)]), 0);
     }
 
-    /// What the name at `$0` in a scene refers to, and how many references that has.
+    /// Describes the declaration of the name at `$0` in a scene, and the number of its references.
     fn declared(scene: &str) -> String {
         let program = format!("{PARTS}$0{YARD}");
         let (database, position) = with_scene(&[("/w/a.pyr", &program)], "");

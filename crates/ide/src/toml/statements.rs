@@ -1,4 +1,4 @@
-//! How far what is said in a TOML file reaches, also where it is half typed.
+//! The lines that a statement in a TOML file takes up, also while it is being typed.
 
 use pydslrep_schema::{Span, name_parts};
 

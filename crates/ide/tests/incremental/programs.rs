@@ -114,7 +114,7 @@ pub(crate) struct Start {
     seed: u64,
     /// A handwritten program instead of the first generated one.
     written: Option<usize>,
-    /// Whether one program is distributed over all files, so that they depend on each other.
+    /// True if one program is distributed over all files, so that they depend on each other.
     dealt: bool,
     /// Six bits per file: its imports.
     imports: u32,
@@ -124,7 +124,7 @@ pub(crate) struct Start {
     kept: Vec<bool>,
     /// One of the programs that have scenes and initially no errors.
     driving: Option<usize>,
-    /// Whether generated programs have mistakes.
+    /// True if generated programs have errors.
     mistakes: bool,
 }
 
@@ -179,7 +179,7 @@ impl Start {
         if self.driving.is_some() { &IN_THE_WAY } else { &[] }
     }
 
-    /// Whether a file is open before the first step.
+    /// Returns whether a file is open before the first step.
     pub(crate) fn is_open(&self, file: usize) -> bool {
         self.driving.is_some() || file == 0 || self.open >> file & 1 == 1
     }

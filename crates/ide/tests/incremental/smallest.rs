@@ -15,7 +15,7 @@ pub(crate) struct Failure {
     pub(crate) before: Model,
     pub(crate) change: Change,
     pub(crate) difference: String,
-    /// Whether a database that was fresh before this edit also fails.
+    /// True if a database that was fresh before this edit fails as well.
     is_alone: bool,
 }
 

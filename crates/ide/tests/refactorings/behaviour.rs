@@ -1,4 +1,5 @@
-//! What the robots of a program do: by the plan as far as it is known, and by the statements, unrolled, where it is not.
+//! The behaviour of a program's robots: by the plan as far as it is known, and by the unrolled statements where it is
+//! not.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -7,9 +8,9 @@ use pydslrep_analysis::environment::{Action, ActionKind, Condition, Environment}
 use pydslrep_analysis::{Database, FileId, plan, scene};
 
 /// More statements are not compared.
-const MOST_STATEMENTS: usize = 50_000;
+const MAX_STATEMENTS: usize = 50_000;
 
-/// What the robots of an environment do.
+/// The behaviour of the robots of an environment.
 #[derive(Debug)]
 pub(crate) struct Behaviour {
     /// The pose at the end of each leg, when it starts and how long it takes; robot by robot.
@@ -19,7 +20,7 @@ pub(crate) struct Behaviour {
     pub(crate) statements: Option<Vec<String>>,
 }
 
-/// What each environment without errors does.
+/// Returns the behaviour of each environment without errors.
 pub(crate) fn behaviours(database: &Database, file: FileId) -> BTreeMap<String, Behaviour> {
     let mut all = BTreeMap::new();
     for (id, name) in database.environments(file) {
@@ -46,7 +47,7 @@ fn close(a: f64, b: f64) -> bool {
 }
 
 impl Behaviour {
-    /// Whether all legs end at the same poses; and, if asked for, at the same times.
+    /// Returns whether all legs end at the same poses and, if asked for, at the same times.
     pub(crate) fn has_same_legs(&self, other: &Self, with_times: bool) -> bool {
         let count = if with_times { 5 } else { 3 };
         let near = |a: &[f64; 5], b: &[f64; 5]| a.iter().zip(b).take(count).all(|(a, b)| close(*a, *b));
@@ -77,7 +78,7 @@ fn statements(environment: &Environment) -> Option<Vec<String>> {
 /// Adds what is done; `None` if it is too much.
 fn unroll(environment: &Environment, actions: &[Action], all: &mut Vec<String>) -> Option<()> {
     for action in actions {
-        if all.len() > MOST_STATEMENTS {
+        if all.len() > MAX_STATEMENTS {
             return None;
         }
         match &action.kind {
@@ -110,7 +111,7 @@ fn block(environment: &Environment, actions: &[Action]) -> Option<String> {
     Some(inner.join("; "))
 }
 
-/// What a choice comes to, whichever way round it asks.
+/// Describes a choice, equally for a condition and its negation.
 fn choice(condition: &Condition, then: &str, otherwise: &str) -> String {
     let (detected, clear) = if condition.detect { (then, otherwise) } else { (otherwise, then) };
     let mut text = String::new();

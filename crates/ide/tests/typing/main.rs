@@ -1,5 +1,5 @@
-//! How much completion helps: types the paper's programs, the examples and generated ones optimally, key by key. The
-//! figures are in `docs/performance.md`.
+//! Measures how much completion helps: types the paper's programs, the examples and generated ones optimally, key by
+//! key. The figures are in `docs/performance.md`.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests are tests, too")]
 
@@ -17,7 +17,7 @@ use self::keys::keys;
 use self::ranks::{Ranks, ranks};
 
 /// The maximum ratio of keys to characters over all programs.
-const MOST_KEYS: f64 = 0.55;
+const MAX_KEYS: f64 = 0.55;
 /// The minimum share of positions where the next word ranks first.
 const FIRST: f64 = 0.9;
 /// The same number as is typed into real editors.
@@ -125,7 +125,7 @@ fn completion_saves_half_the_keys_and_has_the_right_word_first() {
     rows.push(written);
     rows.push(total("50 generated programs", &generated));
     for row in &rows[rows.len() - 2..] {
-        assert!(share(row.keys, row.characters) <= MOST_KEYS, "{} keys of {}", row.keys, row.characters);
+        assert!(share(row.keys, row.characters) <= MAX_KEYS, "{} keys of {}", row.keys, row.characters);
         assert!(share(row.ranks.first, row.ranks.places) >= FIRST, "{:?}", row.ranks);
     }
     let page = root().join("docs/performance.md");

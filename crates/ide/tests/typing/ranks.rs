@@ -33,14 +33,14 @@ pub(crate) fn ranks(program: &str) -> Ranks {
     ranks
 }
 
-/// Whether a name refers to an earlier declaration: later ones cannot be suggested.
+/// Returns whether a name refers to an earlier declaration: later ones cannot be suggested.
 fn is_known(program: &str, tokens: &[Token], index: usize) -> bool {
     let name = |index: usize| tokens[index].1.text(program);
     let is_declared = |other: usize| name(other) == name(index) && declares(&tokens[..other]);
     !declares(&tokens[..index]) && (0..index).any(is_declared)
 }
 
-/// Whether the next word is a new name.
+/// Returns whether the next word is a new name.
 fn declares(before: &[Token]) -> bool {
     let declaring = [
         TokenKind::Wheel,

@@ -14,7 +14,7 @@ pub(crate) struct Filled {
     /// The range in the program.
     pub(crate) start: usize,
     pub(crate) end: usize,
-    /// Whether it equals the default.
+    /// True if it equals the default.
     pub(crate) is_default: bool,
 }
 

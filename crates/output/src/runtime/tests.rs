@@ -1,4 +1,4 @@
-//! What becomes of a folder, by what was in it before.
+//! The results for a folder, by its previous content.
 
 use std::collections::BTreeMap;
 

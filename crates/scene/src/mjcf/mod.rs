@@ -32,11 +32,19 @@ const UNSEEN: &str = "1";
 const SLIPPERY: [f64; 3] = [0.0001, 0.0001, 0.0001];
 const BODY_FRICTION: [f64; 3] = [0.3, 0.005, 0.0001];
 
+const FLOOR_NAME: &str = "floor";
+
+/// Friction of the floor, as that of others.
+fn floor_friction(scene: &Scene) -> [f64; 3] {
+    [scene.friction, 0.005, 0.0001]
+}
+
 /// The world of a scene for `MuJoCo`.
 pub fn mjcf(scene: &Scene) -> String {
     let world = World::of(scene);
     let robots: Vec<_> = scene.robots.iter().map(|robot| robots::robot(robot, scene)).collect();
     let (bodies, motors): (Vec<Element>, Vec<Vec<Element>>) = robots.into_iter().unzip();
+    let (defaults, contacts) = wheels::contacts(scene);
     let parts = [
         Element::new("compiler").text("angle", "radian"),
         Element::new("option")
@@ -47,8 +55,10 @@ pub fn mjcf(scene: &Scene) -> String {
             .numbers("impratio", &[10.0]),
         Element::new("size").text("nuser_jnt", "4").text("nuser_site", "2"),
         Element::new("custom").with(numbers(scene)).with(world.paths),
+        defaults,
         Element::new("asset").with(world.meshes),
-        Element::new("worldbody").with([floor(scene.friction)]).with(world.bodies).with(bodies),
+        Element::new("worldbody").with([floor(scene)]).with(world.bodies).with(bodies),
+        contacts,
         Element::new("actuator").with(motors.into_iter().flatten()),
     ];
     let parts = parts.into_iter().filter(|part| !part.is_void());
@@ -61,14 +71,14 @@ pub fn mjcf(scene: &Scene) -> String {
 /// The first words of its files, by which they are known when they are written again (`output/src/kind.rs`).
 const MARK: &str = "A world for MuJoCo, written by PyDSLRep";
 
-fn floor(friction: f64) -> Element {
+fn floor(scene: &Scene) -> Element {
     Element::new("geom")
-        .text("name", "floor")
+        .text("name", FLOOR_NAME)
         .text("type", "plane")
         .numbers("size", &[0.0, 0.0, 1.0])
         .text("contype", FLOOR.to_string())
         .text("conaffinity", "0")
-        .numbers("friction", &[friction, 0.005, 0.0001])
+        .numbers("friction", &floor_friction(scene))
         .numbers("rgba", &[0.93, 0.93, 0.91, 1.0])
 }
 

@@ -48,7 +48,7 @@ fn mounts(robot: &Robot, scene: &Scene) -> Vec<Mount> {
     let wheels = robot.wheels.iter().zip(places).zip(positions);
     wheels
         .map(|((wheel, place), known)| Mount {
-            name: format!("{}/{}", robot.name, wheel.name),
+            name: wheels::name(robot, wheel),
             known,
             known_radius: wheel.radius,
             place: (known.0, known.1 * (1.0 + wider)),

@@ -46,11 +46,11 @@ fn a_two_wheel_robot_stands_on_casters() {
                   <site name="rover/front" pos="0.15 0 0.07" quat="1 0 0 0" user="1 0.34906585"/>
                   <body name="rover/left" pos="0 0.15 0.05">
                     <joint name="rover/left" axis="0 1 0" armature="0.00125" damping="0.00125" user="0.05 0 0.15 1"/>
-                    <geom type="cylinder" size="0.05 0.015" quat="0.707106781 0.707106781 0 0" mass="0.2" rgba="0.15 0.15 0.15 1" contype="0" conaffinity="3" condim="4" friction="0.0001 0.0001 0.0001" group="1"/>
+                    <geom name="rover/left" type="cylinder" size="0.05 0.015" quat="0.707106781 0.707106781 0 0" mass="0.2" rgba="0.15 0.15 0.15 1" contype="0" conaffinity="3" condim="4" friction="0.0001 0.0001 0.0001" group="1"/>
                   </body>
                   <body name="rover/right" pos="0 -0.15 0.05">
                     <joint name="rover/right" axis="0 1 0" armature="0.00125" damping="0.00125" user="0.05 0 -0.15 1"/>
-                    <geom type="cylinder" size="0.05 0.015" quat="0.707106781 0.707106781 0 0" mass="0.2" rgba="0.15 0.15 0.15 1" contype="0" conaffinity="3" condim="4" friction="0.0001 0.0001 0.0001" group="1"/>
+                    <geom name="rover/right" type="cylinder" size="0.05 0.015" quat="0.707106781 0.707106781 0 0" mass="0.2" rgba="0.15 0.15 0.15 1" contype="0" conaffinity="3" condim="4" friction="0.0001 0.0001 0.0001" group="1"/>
                   </body>
                 </body>
               </worldbody>
@@ -61,6 +61,22 @@ fn a_two_wheel_robot_stands_on_casters() {
             </mujoco>
         "#]],
     );
+}
+
+#[test]
+fn wheels_that_scrub_touch_the_floor_in_their_own_way() {
+    let robots = vec![robot("plain", Drive::FourWheel, &[]), robot("other", Drive::FourMecanum, &[])];
+    let (scene, _) = read("[world]\nfriction = 0.3\n", Scene::empty_floor(robots));
+    let text = mjcf(&scene);
+    let pairs: Vec<&str> = text.lines().map(str::trim).filter(|line| line.starts_with("<pair ")).collect();
+    expect![[r#"
+        <pair condim="4" friction="0.3 0.3 0.005 0.0001 0.0001" solreffriction="0.1 1" solimp="0.1 0.9 0.0005"/>
+        <pair geom1="floor" geom2="plain/left_front"/>
+        <pair geom1="floor" geom2="plain/left_rear"/>
+        <pair geom1="floor" geom2="plain/right_front"/>
+        <pair geom1="floor" geom2="plain/right_rear"/>
+    "#]]
+    .assert_eq(&(pairs.join("\n") + "\n"));
 }
 
 #[test]

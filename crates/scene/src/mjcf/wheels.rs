@@ -3,8 +3,8 @@
 use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 
 use super::xml::Element;
-use super::{FLOOR, OBSTACLE, SLIPPERY, UNSEEN};
-use crate::Robot;
+use super::{FLOOR, FLOOR_NAME, OBSTACLE, SLIPPERY, UNSEEN, floor_friction};
+use crate::{Robot, Scene, Wheel};
 
 /// The inertia of a motor's rotor at the rim, kilograms. With less, motors swing.
 const ROTOR: f64 = 0.5;
@@ -28,12 +28,18 @@ const ROLLER_AXIS: f64 = 0.73;
 const ROLLER_ROTOR: f64 = 0.001;
 const ROLLER_DRAG: f64 = 0.01;
 
+/// How tyres that scrub take friction: the time in which sliding ends, seconds, and its damping.
+const TYRE_FRICTION: [f64; 2] = [0.1, 1.0];
+
+/// How much of the floor's support they have at once and when they have sunk in so many metres, the last number.
+const TYRE_SUPPORT: [f64; 3] = [0.1, 0.9, 0.0005];
+
 /// From an axis along z to one along y.
 const ALONG_Y: [f64; 4] = [FRAC_1_SQRT_2, FRAC_1_SQRT_2, 0.0, 0.0];
 
 /// Where a wheel is, and where scripts believe it to be.
 pub(super) struct Mount {
-    /// Of its body, joint and motor.
+    /// [`name`].
     pub(super) name: String,
     /// Metres ahead and to the left.
     pub(super) known: (f64, f64),
@@ -42,6 +48,11 @@ pub(super) struct Mount {
     pub(super) radius: f64,
     /// Which way it pushes, [`pydslrep_kinematics::WheelPlace::push`].
     pub(super) push: f64,
+}
+
+/// What the body, the joint, the motor and the tyre of a wheel are called.
+pub(super) fn name(robot: &Robot, wheel: &Wheel) -> String {
+    format!("{}/{}", robot.name, wheel.name)
 }
 
 /// The body of a wheel, with its joint.
@@ -61,15 +72,38 @@ pub(super) fn wheel(robot: &Robot, mount: &Mount) -> Element {
     if robot.drive.row().mecanum {
         body.with([hub(radius)]).with((0..ROLLERS).map(|index| roller(radius, mount.push, index)))
     } else {
-        body.with([tyre(radius, robot.wheel_width)])
+        body.with([tyre(mount, robot.wheel_width)])
     }
 }
 
-fn tyre(radius: f64, width: f64) -> Element {
+/// How the tyres of robots that scrub touch the floor: a default, and a pair for each wheel; both void without such robots.
+///
+/// In a contact of `MuJoCo`, what slides is also lifted: the stiffer friction is compared to the support, the higher. With its
+/// defaults, wheels that slide sideways hop, and robots turn a third less than friction and their wheels make them. So friction
+/// is softer here than the support, and wheels sink in by 0.4 mm. Only pairs can tell the two apart.
+pub(super) fn contacts(scene: &Scene) -> (Element, Element) {
+    let scrubbing = scene.robots.iter().filter(|robot| robot.drive.row().scrubs());
+    let wheels = scrubbing.flat_map(|robot| robot.wheels.iter().map(|wheel| name(robot, wheel)));
+    let pairs: Vec<Element> =
+        wheels.map(|wheel| Element::new("pair").text("geom1", FLOOR_NAME).text("geom2", wheel)).collect();
+    if pairs.is_empty() {
+        return (Element::new("default"), Element::new("contact"));
+    }
+    let [sliding, spinning, rolling] = floor_friction(scene);
+    let every = Element::new("pair")
+        .text("condim", "4")
+        .numbers("friction", &[sliding, sliding, spinning, rolling, rolling])
+        .numbers("solreffriction", &TYRE_FRICTION)
+        .numbers("solimp", &TYRE_SUPPORT);
+    (Element::new("default").with([every]), Element::new("contact").with(pairs))
+}
+
+fn tyre(mount: &Mount, width: f64) -> Element {
     rolling(
         Element::new("geom")
+            .text("name", &mount.name)
             .text("type", "cylinder")
-            .numbers("size", &[radius, width / 2.0])
+            .numbers("size", &[mount.radius, width / 2.0])
             .numbers("quat", &ALONG_Y)
             .numbers("mass", &[WHEEL_MASS])
             .numbers("rgba", &[0.15, 0.15, 0.15, 1.0]),

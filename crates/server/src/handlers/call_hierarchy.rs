@@ -21,7 +21,7 @@ pub(crate) fn prepare(state: &State, params: &CallHierarchyPrepareParams) -> Opt
     (!items.is_empty()).then_some(items)
 }
 
-/// Who runs a movement, or drives a robot.
+/// Returns the callers: environments that run a movement or a robot.
 pub(crate) fn incoming(
     state: &State,
     params: &CallHierarchyIncomingCallsParams,
@@ -34,7 +34,7 @@ pub(crate) fn incoming(
     Some(calls.collect())
 }
 
-/// What an environment runs, or a movement drives.
+/// Returns the callees: the movements that an environment runs, or that a movement does.
 pub(crate) fn outgoing(
     state: &State,
     params: &CallHierarchyOutgoingCallsParams,

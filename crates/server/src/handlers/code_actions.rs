@@ -41,7 +41,7 @@ const SCRIPT_HERE_KIND: CodeActionKind = CodeActionKind::new("script");
 /// Its command, where the client cannot create files.
 pub(crate) const GENERATE_SCRIPT: &str = "pydslrep.generateScript";
 
-/// The command that writes what a script imports, where the client has created the script.
+/// The command that writes the package that a script imports, where the client has created the script.
 pub(crate) const WRITE_RUNTIME: &str = "pydslrep.writeRuntime";
 
 pub(crate) fn announce(server: &mut ServerCapabilities, client: &ClientFeatures) {
@@ -63,7 +63,7 @@ pub(crate) fn announce(server: &mut ServerCapabilities, client: &ClientFeatures)
     server.code_action_provider = Some(options.into());
 }
 
-/// What the editor asks for by itself is about the line of the cursor.
+/// Records the cursor: requests that the editor sends by itself are about the cursor's line.
 pub(crate) fn note_cursor(state: &mut State, params: &CodeActionParams) {
     let cursor = TextDocumentPositionParams::new(params.text_document.clone(), params.range.end);
     state.note_cursor(&cursor);
@@ -182,7 +182,7 @@ fn key_fixes(
     found.into_iter().map(|fix| action(fix).into()).collect()
 }
 
-/// Creates the scenes of what is at the cursor, or adds what is missing in them.
+/// Creates the scenes of the declaration at the cursor, or adds what they lack.
 fn scene_actions(
     state: &State,
     document: Document<'_>,
@@ -204,7 +204,7 @@ fn scene_action(state: &State, offer: ide::SceneAction) -> Option<CodeAction> {
         (format!("Add {} to {file_name}", added.join(", ")), edits.finish(state))
     } else {
         let key = state.workspace.scene_key(program, &environment)?;
-        // What cannot be read is no reason to replace it.
+        // A file that cannot be read is not replaced.
         if !state.client.create_files || state.workspace.is_file(&key) {
             return None;
         }

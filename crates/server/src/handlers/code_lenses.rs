@@ -28,10 +28,10 @@ const OF_ENVIRONMENTS: &[(IsShown, &str, &str)] = &[
     (|wanted| wanted.generate_script, "Generate script", GENERATE_SCRIPT),
 ];
 
-/// Whether a lens is shown.
+/// Returns whether the settings show a lens.
 type IsShown = fn(&Wanted) -> bool;
 
-/// Whether the references of a kind are shown; `None` for environments, which have none.
+/// Returns whether the references of a kind are shown; `None` for environments, which have none.
 fn shows_references(wanted: &Wanted, kind: EntityKind) -> Option<bool> {
     match kind {
         EntityKind::Wheel => Some(wanted.wheels),
@@ -96,7 +96,7 @@ fn of_environment(uri: &Uri, name: &str, range: Range, wanted: &Wanted) -> Vec<C
         .collect()
 }
 
-/// The references to what a file declares, in programs and in scenes.
+/// The references to the declarations of a file, in programs and in scenes.
 fn locations(state: &State, file: FileId, kind: EntityKind, name: &str) -> Vec<Location> {
     let (database, name) = (state.database(), name.into());
     let in_programs = database.references(file, kind, &name).into_iter();

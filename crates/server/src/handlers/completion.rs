@@ -15,9 +15,9 @@ use crate::client::ClientFeatures;
 use crate::documents::Document;
 use crate::state::State;
 
-/// How many items have documentation where the client does not resolve it: finding a declaration takes a while in a long
-/// file, and nobody reads them all.
-const MOST_DOCUMENTED: usize = 50;
+/// The maximum number of items with documentation if the client does not resolve it: finding a declaration takes a while in a
+/// long file, and nobody reads them all.
+const MAX_DOCUMENTED: usize = 50;
 
 /// The entity of a completion: its data until it is resolved.
 #[derive(Debug, Serialize, Deserialize)]
@@ -38,7 +38,8 @@ pub(crate) fn announce(server: &mut ServerCapabilities, _: &ClientFeatures) {
     });
 }
 
-/// What the grammar allows at a position, and which names make sense there; in a settings file or a scene, which keys.
+/// Returns the completions at a position: in a program, what the grammar allows and the names that make sense there; in
+/// a settings file or a scene, keys.
 pub(crate) fn completion(state: &mut State, params: &CompletionParams) -> Option<CompletionResponse> {
     let trigger = trigger(state, params);
     let state = &*state;
@@ -126,7 +127,7 @@ fn convert(state: &State, document: Document<'_>, completion: ide::Completion, a
             let of = CompletionOf { home, kind: kind.noun().to_owned(), name: item.label.clone() };
             item.data = serde_json::to_value(of).ok();
         }
-        ide::Documentation::Of(home, kind) if at < MOST_DOCUMENTED => {
+        ide::Documentation::Of(home, kind) if at < MAX_DOCUMENTED => {
             let name = item.label.as_str().into();
             let text = ide::completion_documentation(state.database(), home, kind, &name);
             item.documentation = text.and_then(|text| documentation(state, text));

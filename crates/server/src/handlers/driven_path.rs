@@ -41,7 +41,7 @@ impl Notification for DrivenPathChanged {
 pub(crate) struct DrivenPaths {
     /// By the program's key and the environment's name.
     paths: FxHashMap<(String, String), Value>,
-    /// Who has what, and is notified when it changes.
+    /// The audiences of each environment, which are notified of changes.
     watched: Vec<(Audience, ChosenEnvironment)>,
 }
 

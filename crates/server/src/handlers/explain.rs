@@ -17,7 +17,7 @@ impl Request for Explain {
     const METHOD: &'static str = "pydslrep/explain";
 }
 
-/// Which diagnostic is meant.
+/// The diagnostic to explain.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct DiagnosticCode {
     code: String,

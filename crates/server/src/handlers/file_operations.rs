@@ -1,5 +1,5 @@
-//! What a client does to files and folders in its own tree: `workspace/willRenameFiles` asks before,
-//! `workspace/didRenameFiles`, `didCreateFiles` and `didDeleteFiles` notify afterwards.
+//! File operations in the client's own tree: `workspace/willRenameFiles` asks before, `workspace/didRenameFiles`,
+//! `didCreateFiles` and `didDeleteFiles` notify afterwards.
 //!
 //! A client that also watches files reports the same twice, which does no harm.
 

@@ -12,7 +12,7 @@ use crate::state::State;
 /// Returns the kinematics of a robot as Markdown; its argument is a [`RobotOf`].
 pub(crate) const SHOW_KINEMATICS: &str = "pydslrep.showKinematics";
 
-/// Which robot is meant.
+/// A robot of a program.
 #[derive(Debug, Deserialize)]
 pub(crate) struct RobotOf {
     /// The program.
@@ -21,7 +21,7 @@ pub(crate) struct RobotOf {
     robot: String,
 }
 
-/// The command [`SHOW_KINEMATICS`]: what a hover over the robot shows.
+/// The command [`SHOW_KINEMATICS`]: shows the text of a hover over the robot.
 pub(crate) fn show_kinematics(state: &State, RobotOf { uri, robot }: &RobotOf) -> Result<Option<LSPAny>> {
     let (_, file) = state
         .analysed(uri)
@@ -33,7 +33,7 @@ pub(crate) fn show_kinematics(state: &State, RobotOf { uri, robot }: &RobotOf) -
     Ok(Some(found.markdown.into()))
 }
 
-/// What is known about the thing at a position.
+/// Returns the hover at a position.
 pub(crate) fn hover(state: &State, params: &HoverParams) -> Option<Hover> {
     let at = &params.text_document_position_params;
     let (document, found) = if let Some((document, file, text)) = state.toml_text(&at.text_document.uri) {

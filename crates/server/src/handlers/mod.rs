@@ -251,7 +251,7 @@ fn editing(table: &mut Table) {
     });
 }
 
-/// What `docs/protocol.md` adds to the protocol, for previews.
+/// The methods that `docs/protocol.md` adds to the protocol, for previews.
 fn paths(table: &mut Table) {
     table.read_long::<PlannedPath, _>(
         |state, which| state.if_long(&which.uri),

@@ -12,7 +12,7 @@ use crate::chosen::ChosenEnvironment;
 use crate::handlers::scripts::environment;
 use crate::state::State;
 
-/// The request for what a position has to do with planned paths.
+/// The request for the environments and the action at a position.
 pub(crate) enum PlannedAt {}
 
 impl Request for PlannedAt {
@@ -30,7 +30,7 @@ impl Request for ActionLocation {
     const METHOD: &'static str = "pydslrep/actionLocation";
 }
 
-/// Which action is meant.
+/// An action of an environment.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct ActionOf {
     #[serde(flatten)]
@@ -39,7 +39,7 @@ pub(crate) struct ActionOf {
     action: NumberedAction,
 }
 
-/// What a position has to do with planned paths.
+/// The environments and the action that a position belongs to in planned paths.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct At {
     #[serde(flatten)]
@@ -49,8 +49,9 @@ pub(crate) struct At {
     program: Option<Uri>,
 }
 
-/// What a position has to do with planned paths; `None` where the document is not open, or neither a program nor the
-/// scene of one. An environment being typed is named once it lists robots: before, its name changes with each letter.
+/// Returns the environments and the action at a position; `None` if the document is not open, or is neither a program
+/// nor the scene of one. An environment being typed is named once it lists robots: before, its name changes with each
+/// letter.
 pub(crate) fn planned_at(state: &mut State, at: &TextDocumentPositionParams) -> Option<At> {
     let state = &*state;
     if let Some(place) = state.place(at) {

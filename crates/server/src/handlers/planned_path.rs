@@ -19,7 +19,7 @@ use crate::state::State;
 
 /// Longer paths are not planned again to see whether a change has changed them: planning takes longer than asking the
 /// client to request them again.
-const MOST_LEGS: usize = 1_000;
+const MAX_LEGS: usize = 1_000;
 
 /// The request.
 pub(crate) enum PlannedPath {}
@@ -48,7 +48,7 @@ pub(crate) fn planned_path(
     state.watched.retain(|watched| !watched.is(which, audience));
     let fingerprint = fingerprint(state, which);
     let sent = match &path {
-        Ok(path) if path.robots.iter().any(|robot| robot.legs.len() > MOST_LEGS) => Sent::Long,
+        Ok(path) if path.robots.iter().any(|robot| robot.legs.len() > MAX_LEGS) => Sent::Long,
         Ok(path) => Sent::Path(path.clone()),
         Err(error) => Sent::Failure(error.clone()),
     };
@@ -120,7 +120,7 @@ fn fingerprint(state: &State, which: &ChosenEnvironment) -> Option<Fingerprint> 
     state.database().fingerprint(environment(state, which).ok()?)
 }
 
-/// Whether its audience has the path as it is now.
+/// Returns whether the audience has the current path.
 fn is_sent(state: &State, watched: &Watched) -> bool {
     match &watched.sent {
         Sent::Path(path) => plan(state, &watched.which).as_ref() == Ok(path),
@@ -141,7 +141,7 @@ pub(crate) fn announce(state: &mut State, outbox: &Outbox) {
             watched.fingerprint = fingerprint;
             state.watched.push(watched);
         } else if state.is_error_unsettled() && plan(state, &watched.which).is_err() {
-            // What was sent stays until the line is left.
+            // The path last sent stays until the line is left.
             state.watched.push(watched);
         } else {
             match watched.audience {

@@ -45,7 +45,7 @@ const FILES: &[File] = &[
     },
 ];
 
-/// What to show.
+/// The path to show.
 #[derive(Debug, Default, Deserialize)]
 pub(crate) struct Shown {
     /// The program; else that of the latest cursor, or the one that was opened last.
@@ -72,7 +72,7 @@ impl Request for ApplyFix {
     const METHOD: &'static str = "pydslrep/applyFix";
 }
 
-/// A fix that a page was told of.
+/// A fix that was offered to a page.
 #[derive(Debug, Serialize, Deserialize)]
 struct FixOf {
     location: Location,
@@ -185,7 +185,7 @@ fn planned_path(server: &Server, id: &Id, params: Value) -> Result<Body> {
     let path =
         server.read_latest(&which.uri, |state| planned_path::planned_path(state, &which, Audience::Page));
     let path = path.map_err(|mut error| {
-        // What the page cannot have done is not offered.
+        // Fixes that the page cannot apply are not offered.
         if !server.state().client.applies_edits
             && let Some(Value::Object(data)) = &mut error.data
         {

@@ -44,19 +44,19 @@ struct ProgramCopy {
     program: PathBuf,
 }
 
-/// How a printed error begins.
+/// The prefix of a printed error.
 const ERROR: &str = "error: ";
 
 /// The exit code of a child that was interrupted.
 const INTERRUPTED: i32 = 130;
 
-/// What to start.
+/// A command to start.
 #[derive(Debug)]
 pub(crate) struct Job {
     copy: ProgramCopy,
     environment: String,
     subcommand: &'static str,
-    /// What is drawn, as part of the picture's name.
+    /// The drawing that it makes, as part of the picture's name.
     what: &'static str,
 }
 
@@ -213,16 +213,16 @@ pub(crate) fn map(picture: &Path) -> PathBuf {
 }
 
 /// The error for a child that failed or was interrupted.
-pub(crate) fn ended_badly(code: Option<i32>, said: &[String]) -> Error {
+pub(crate) fn ended_badly(code: Option<i32>, stderr: &[String]) -> Error {
     if code == Some(INTERRUPTED) {
         return cancelled("the run was cancelled");
     }
     // Warnings about the program come before the error that ended it, and an editor shows those anyway.
-    let first = said.iter().position(|line| line.starts_with(ERROR)).unwrap_or(0);
-    if said.is_empty() {
+    let first = stderr.iter().position(|line| line.starts_with(ERROR)).unwrap_or(0);
+    if stderr.is_empty() {
         return failure("pydslrep exited without output".to_owned());
     }
-    failure(said[first..].join("\n"))
+    failure(stderr[first..].join("\n"))
 }
 
 /// The error for a request that the user does not want any more.

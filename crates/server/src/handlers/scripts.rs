@@ -39,9 +39,9 @@ pub(crate) struct Script {
     pub(crate) uri: Uri,
     /// Its text.
     pub(crate) text: String,
-    /// How many of the last folders of its path the settings name.
+    /// The number of last folders of its path that the settings name.
     depth: usize,
-    /// Whether the settings want the package that it imports next to it.
+    /// True if the settings want the package that it imports next to it.
     needs_runtime: bool,
     /// The files that the client provides, where there is no disk.
     provided: Option<Arc<MemoryFiles>>,
@@ -78,7 +78,7 @@ impl Script {
         path.parent().map(Path::to_owned)
     }
 
-    /// Whether there is a file in its place, as far as is known.
+    /// Returns whether a file is known to be in its place.
     fn exists(&self) -> bool {
         match &self.provided {
             Some(files) => files.is_file(Path::new(&key(&self.uri))),
@@ -129,7 +129,7 @@ pub(crate) fn generate(state: &State, which: &ChosenEnvironment) -> jsonrpc::Res
     of_environment(state, program.as_ref().unwrap_or(&which.uri), id)
 }
 
-/// The environment that is meant.
+/// The chosen environment.
 ///
 /// # Errors
 ///
@@ -189,7 +189,7 @@ fn program_name(program: &Uri) -> String {
     path.rsplit('/').next().unwrap_or_default().to_owned()
 }
 
-/// What a client can do about a failure, in the `data` of the error.
+/// The cause of a failure that a client can act on, in the `data` of the error.
 #[derive(Debug, Serialize)]
 #[serde(tag = "reason", rename_all = "kebab-case")]
 pub(crate) enum Cause {
@@ -315,7 +315,7 @@ pub(crate) fn save(state: &mut State, program: &Uri, outbox: &Outbox) {
     }
 }
 
-/// Why a script is not written, and what to do about it.
+/// Why a script is not written, with advice.
 pub(crate) fn reason(error: &WriteError) -> String {
     match (error, error.help()) {
         (WriteError::Foreign(..), _) => format!("{error}; move it, or rename the environment"),
@@ -329,7 +329,7 @@ pub(crate) fn reason(error: &WriteError) -> String {
 const REPLACE: &str = "Replace It";
 const KEEP: &str = "Keep It";
 
-/// What to ask the user before a script is written; `None` if there is nothing to ask.
+/// Returns the question to the user before a script is written; `None` if there is nothing to ask.
 ///
 /// # Errors
 ///
@@ -348,7 +348,7 @@ pub(crate) fn question(
     }))
 }
 
-/// Whether an answer to [`question`] allows it.
+/// Returns whether an answer to [`question`] allows it.
 pub(crate) fn allows(answer: Option<&MessageActionItem>) -> bool {
     answer.is_some_and(|answer| answer.title == REPLACE)
 }

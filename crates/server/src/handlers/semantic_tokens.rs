@@ -1,4 +1,4 @@
-//! `textDocument/semanticTokens`: highlighting by what names mean.
+//! `textDocument/semanticTokens`: highlighting by the meaning of names.
 
 use std::sync::Arc;
 
@@ -35,7 +35,7 @@ pub(crate) fn full(state: &mut State, params: &SemanticTokensParams) -> Option<W
     state.work(uri, |_, encoding| Box::new(move |snapshot| all(&snapshot, encoding, result_id, &counts)))
 }
 
-/// What changed since the tokens that the client has.
+/// Returns the changes since the tokens that the client has.
 pub(crate) fn delta(
     state: &mut State,
     params: &SemanticTokensDeltaParams,
@@ -56,7 +56,7 @@ pub(crate) fn delta(
     })
 }
 
-/// Keeps what the client is about to get, if it supports deltas.
+/// Keeps the tokens that the client is about to get, if it supports deltas.
 fn remember(state: &mut State, uri: &Uri) -> (Option<String>, TokenCounts) {
     let counts = TokenCounts::default();
     if !state.client.token_deltas {
@@ -134,7 +134,7 @@ fn change(
     SemanticTokensDelta { result_id, edits: if is_nothing { Vec::new() } else { vec![edit] } }
 }
 
-/// How many numbers encode so many tokens.
+/// Returns the number of integers that encode so many tokens.
 fn numbers(tokens: usize) -> u32 {
     u32::try_from(5 * tokens).unwrap_or(u32::MAX)
 }

@@ -13,7 +13,7 @@ pub(crate) fn wanted() -> Vec<ConfigurationItem> {
     vec![ConfigurationItem { scope_uri: None, section: Some(SECTION.to_owned()) }]
 }
 
-/// Takes over the client's settings, and reports what is wrong with them.
+/// Applies the client's settings, and reports their problems.
 pub(crate) fn set(state: &mut State, settings: &Value, outbox: &Outbox) {
     for problem in state.set_client_settings(settings) {
         let help = problem.help.map(|help| format!(" ({help})")).unwrap_or_default();

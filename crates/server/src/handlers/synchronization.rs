@@ -49,7 +49,7 @@ pub(crate) fn set_trace(state: &mut State, params: &SetTraceParams, _: &Outbox) 
     state.trace = params.value;
 }
 
-/// `$/logTrace`: what the changes of a message cost, for clients that trace verbosely.
+/// `$/logTrace`: the cost of the changes of a message, for clients that trace verbosely.
 fn log_costs(state: &mut State, params: &DidChangeTextDocumentParams, outbox: &Outbox) {
     for counts in state.costs.drain(..) {
         let message = format!("changed {}", params.text_document.uri.as_str());

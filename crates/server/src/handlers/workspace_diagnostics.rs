@@ -14,7 +14,7 @@ use crate::handlers::diagnostics::{of_document, result_id};
 use crate::reader::Reader;
 use crate::state::State;
 
-/// What has changed since the client last asked; waits until something has.
+/// Returns the diagnostics that have changed since the client last asked; waits until some have.
 pub(crate) async fn pull_workspace(
     mut reader: Reader,
     params: WorkspaceDiagnosticParams,

@@ -16,9 +16,9 @@ use crate::pending::PendingRequests;
 use crate::session::{Ending, Session};
 
 /// The most bytes of messages that are kept; then the client has to wait until it has read something.
-const MOST_BYTES: usize = 64 << 20;
+const MAX_BYTES: usize = 64 << 20;
 
-/// What is read from the client; `None` is the end.
+/// A frame read from the client; `None` is the end.
 type Input = io::Result<Option<Frame>>;
 
 /// Messages that were read and not handled yet.
@@ -94,7 +94,7 @@ impl Backlog {
     /// Adds a message as soon as there is room for it.
     fn add(&self, input: Input, bytes: usize) {
         let mut state = self.lock();
-        while state.bytes > MOST_BYTES {
+        while state.bytes > MAX_BYTES {
             state = self.has_changed.wait(state).unwrap_or_else(PoisonError::into_inner);
         }
         state.bytes += bytes;

@@ -104,7 +104,7 @@ struct Hurried {
 
 type SharedHurried = Arc<(Mutex<Hurried>, Condvar)>;
 
-/// What it writes: its requests and, once they are answered, the end.
+/// The client's output: its requests and, once they are answered, the end.
 struct Requests(SharedHurried, Cursor<Vec<u8>>, usize, Cursor<Vec<u8>>);
 
 impl Read for Requests {
@@ -122,10 +122,10 @@ impl Read for Requests {
     }
 }
 
-/// How answers to outlines begin; others are no lists.
+/// The beginning of answers to outlines; other answers are not lists.
 const LIST: &[u8] = b"\"result\":[";
 
-/// What it reads.
+/// The client's input.
 struct Answers(SharedHurried, Vec<u8>);
 
 impl Write for Answers {
@@ -174,10 +174,11 @@ fn check_hurried_client(wheels: usize) {
     assert_eq!(client.0.lock().unwrap().answers, REQUESTS, "all are answered in the end");
     // And the answer that was being written when it became full.
     let most = LIMIT + wheels * 300;
-    assert!((LIMIT..most).contains(&load.most_bytes()), "{}", load.most_bytes());
+    assert!((LIMIT..most).contains(&load.peak_bytes()), "{}", load.peak_bytes());
 }
 
-/// What happens in turn: a client that reads nothing has cancelled a request, that ends, and only then the client reads.
+/// The order of events: a client that reads nothing cancels a request, the request ends, and only then the client
+/// reads.
 #[derive(Default)]
 struct Turns {
     state: Mutex<Turn>,
@@ -193,7 +194,7 @@ enum Turn {
     Reading,
 }
 
-/// What does not happen within this time does not happen.
+/// The time after which an event is not expected any more.
 const LIMIT: Duration = Duration::from_secs(60);
 
 impl Turns {
@@ -275,7 +276,7 @@ fn what_is_cancelled_ends_while_the_client_does_not_read() {
     assert!(*has_ended.lock().unwrap(), "the request goes on although it was cancelled");
     let messages = messages(&output);
     assert_eq!(error_code(&messages, 1000), -32800);
-    // Whoever leaves may get no answer to the last ones at all.
+    // A client that leaves may get no answer to the last ones.
     let place = messages.iter().position(|message| message["id"] == 1000).unwrap();
     let is_last = |message: &Value| message["id"] == REQUESTS;
     assert!(!messages[..place].iter().any(is_last), "the last requests are answered when there is room");

@@ -14,8 +14,8 @@ struct ProtocolError(&'static str);
 
 pub use simulator::{Options, Simulator, StartError};
 
-/// How many messages a client's bytes contain in each protocol, if they arrive in parts of a size; `None` if they violate
-/// the protocol. Public for the tests that look for such bytes.
+/// Returns the number of messages in a client's bytes for each protocol, if they arrive in parts of a size; `None` if
+/// they violate the protocol. Public for the tests that look for such bytes.
 #[doc(hidden)]
 pub fn count_messages(bytes: &[u8], part: usize) -> [Option<usize>; 2] {
     let (mut zmtp, mut legacy) = (zmtp::Receiver::default(), packet::Receiver::default());

@@ -22,7 +22,7 @@ use crate::{Server, Session, Sightings, Strike, World, WorldError};
 const CLOCK_PERIOD: Duration = Duration::from_millis(2);
 const IDLE_PERIOD: Duration = Duration::from_millis(20);
 
-/// How often silent clients are expired.
+/// The interval at which silent clients are expired.
 const EXPIRY_PERIOD: Duration = Duration::from_millis(200);
 
 /// The maximum number of steps that the clock catches up at once; more are dropped rather than block the clients.
@@ -180,9 +180,9 @@ impl Simulator {
         self.session.with(|session| session.world().time())
     }
 
-    /// How many connections were refused because their client's id does not begin with [`Options::token`].
-    pub fn strangers(&self) -> usize {
-        self.session.with(|session| session.strangers())
+    /// Returns the number of connections refused because their client's id does not begin with [`Options::token`].
+    pub fn refused_connections(&self) -> usize {
+        self.session.with(|session| session.refused_connections())
     }
 
     /// The poses of the robots in the scene's order.

@@ -76,7 +76,7 @@ fn push_frame(bytes: &mut Vec<u8>, flags: u8, content: &[u8]) {
 }
 
 impl Receiver {
-    /// Whether the handshake is complete.
+    /// Returns whether the handshake is complete.
     pub(super) fn is_open(&self) -> bool {
         self.stage == Stage::Messages
     }

@@ -25,7 +25,7 @@ impl<'a> Arguments<'a> {
         Self { function, values }
     }
 
-    /// Whether this is a call of a function.
+    /// Returns whether this is a call of a function.
     pub(super) fn is(&self, function: &str) -> bool {
         self.function == function
     }
@@ -72,7 +72,7 @@ impl<'a> Arguments<'a> {
         map.iter().find(|(key, _)| key.as_text() == Some(name)).map(|(_, value)| value)
     }
 
-    /// An argument is missing or has the wrong type: what of both, the first argument that fails tells.
+    /// The failure of the first argument that is missing or has the wrong type.
     fn unfit(&self, index: usize) -> Failure {
         if index < self.values.len() || self.is("sim.getObject") {
             return self.wrong_type();

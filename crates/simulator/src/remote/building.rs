@@ -91,7 +91,7 @@ pub(super) fn call(context: &mut CallContext, function: &str, arguments: &Argume
 }
 
 /// Handles a call on an object that a client has created, if it differs there.
-pub(super) fn call_of_made(
+pub(super) fn call_on_created(
     context: &mut CallContext,
     function: &str,
     arguments: &Arguments,
@@ -446,7 +446,7 @@ fn unfit(context: &CallContext, arguments: &Arguments, index: usize, needed: i64
     arguments.failure(316, reason)
 }
 
-/// Whether a joint turns without end, and its range: the least angle and its width.
+/// Returns whether a joint is cyclic, and its range: the least angle and its width.
 fn interval() -> Vec<Value> {
     vec![true.into(), arguments::list([-PI, TAU])]
 }
@@ -535,7 +535,7 @@ fn bound(kind: &PartKind, arguments: &Arguments) -> Option<f64> {
     [low.x, low.y, low.z, high.x, high.y, high.z].get(place).copied()
 }
 
-/// What a shape is (2: a primitive, 4: convex), which primitive, and its sizes.
+/// Returns the type of a shape (2: a primitive, 4: convex), the kind of primitive, and its sizes.
 fn geometry_of(form: &Form) -> Vec<Value> {
     match form {
         Form::Primitive(kind, size) => {

@@ -17,7 +17,7 @@ use crate::{Sightings, World};
 pub(super) struct CallContext<'a> {
     pub(super) world: &'a mut World,
     pub(super) objects: &'a mut Objects,
-    /// Whether the simulation is started, running or paused.
+    /// True if the simulation was started: it is running or paused.
     pub(super) started: bool,
     /// The text of the main script, if there is one.
     pub(super) main_script: &'a mut Option<String>,
@@ -55,7 +55,7 @@ pub(super) struct Detected {
 
 /// Handles a call by its name without `sim.`; `None` if there is no such function.
 pub(super) fn call(context: &mut CallContext, function: &str, arguments: &Arguments) -> Option<Outcome> {
-    if let Some(outcome) = building::call_of_made(context, function, arguments) {
+    if let Some(outcome) = building::call_on_created(context, function, arguments) {
         return Some(outcome);
     }
     Some(match function {
@@ -366,7 +366,7 @@ impl CallContext<'_> {
             .filter(|(_, floor)| other.is_none_or(|distance| floor.distance < distance))
     }
 
-    /// Whether sensors have been evaluated since the start: the first step does it.
+    /// Returns whether sensors have been evaluated since the start: the first step does it.
     pub(super) fn has_handled_sensors(&self) -> bool {
         self.started && self.world.steps() > 0
     }

@@ -46,7 +46,7 @@ pub(super) struct Object {
     pub(super) alias: String,
     pub(super) parent: Option<Handle>,
     pub(super) kind: Kind,
-    /// What it is made of, if a client has created it.
+    /// The description of an object that a client has created.
     part: Option<Box<Part>>,
 }
 
@@ -70,7 +70,7 @@ pub(super) struct Objects {
     /// The handle of the latest object; none is used twice.
     last: Handle,
     program: Scene,
-    /// Whether clients have changed what is simulated since the latest start.
+    /// True if clients have changed the simulated scene since the latest start.
     has_changed: bool,
     /// For created robots, their place relative to the simulated robot; empty while they are not simulated.
     offsets: BTreeMap<Handle, Isometry3<f64>>,
@@ -191,12 +191,12 @@ impl Objects {
         self.iter().filter(|(_, object)| object.part.is_some()).map(|(handle, _)| handle)
     }
 
-    /// What a created object is made of.
+    /// Returns the description of a created object.
     pub(super) fn part(&self, handle: Handle) -> Option<&Part> {
         self.get(handle)?.part.as_deref()
     }
 
-    /// What a created object is made of, to change it.
+    /// Returns the description of a created object, to change it.
     pub(super) fn part_mut(&mut self, handle: Handle) -> Option<&mut Part> {
         let part = self.all.get_mut(&handle)?.part.as_deref_mut()?;
         self.has_changed = true;
@@ -239,7 +239,7 @@ impl Objects {
         all.filter(|&other| self.is_below(other, Some(handle))).collect()
     }
 
-    /// What a created object stands for in the simulated world, if anything.
+    /// Returns the role of a created object in the simulated world, if it has one.
     pub(super) fn role(&self, handle: Handle) -> Option<Kind> {
         self.get(handle).map(|object| object.kind).filter(|kind| *kind != Kind::Made)
     }

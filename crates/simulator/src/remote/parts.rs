@@ -1,4 +1,4 @@
-//! The objects that clients create: what each of them is made of.
+//! The descriptions of the objects that clients create.
 
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -40,7 +40,7 @@ const CUBOID: [[usize; 3]; 12] = [
     [3, 7, 5],
 ];
 
-/// What an object is.
+/// The kind of an object.
 #[derive(Debug, Clone)]
 pub(super) enum PartKind {
     Shape(ShapePart),
@@ -120,7 +120,7 @@ impl PartKind {
         }
     }
 
-    /// What an object of this kind is called before it gets an alias.
+    /// Returns the alias of a new object of this kind.
     pub(super) fn alias(&self) -> &'static str {
         match self {
             Self::Shape(ShapePart { form: Form::Primitive(kind, _), .. }) => match *kind {
@@ -146,7 +146,7 @@ impl PartKind {
 
     /// The corners of its bounding box as the engine reports them, metres.
     ///
-    /// That of a mesh has axes of its own there: it tells sizes, and no places.
+    /// That of a mesh has axes of its own there: it has the size of the mesh, not its place.
     pub(super) fn reported_bounds(&self) -> (Vector3<f64>, Vector3<f64>) {
         let half = match self {
             Self::Shape(ShapePart { form: Form::Primitive(_, size), .. }) => size / 2.0,
@@ -164,7 +164,7 @@ impl PartKind {
 }
 
 impl JointPart {
-    /// Whether a motor turns it at its target rate.
+    /// Returns whether a motor turns it at its target rate.
     pub(super) fn follows_velocity(&self) -> bool {
         self.mode == info::JOINT_MODE_DYNAMIC && self.control == info::CONTROL_VELOCITY && self.torque != 0.0
     }
@@ -187,7 +187,7 @@ impl Form {
         if matches!(self, Self::Primitive(..)) { PRIMITIVE_FRICTION } else { MESH_FRICTION }
     }
 
-    /// Whether no corner is outside of any triangle.
+    /// Returns whether no corner is outside of any triangle.
     pub(super) fn is_convex(&self) -> bool {
         let Self::Mesh(triangles) = self else { return true };
         let tolerance = 1e-6 * self.size().norm();

@@ -19,10 +19,10 @@ const MAX_ROBOTS: usize = 32;
 /// The maximum number of convex obstacles.
 const MAX_OBSTACLES: usize = 4000;
 
-/// What does not rise higher above the floor is no obstacle, metres.
+/// The height above the floor up to which objects are not obstacles, metres.
 pub(super) const FLOOR: f64 = 0.02;
 
-/// The scene of a program with what clients have created, and what the objects are in it.
+/// The scene of a program with the objects that clients have created, and their roles in it.
 pub(super) struct Recognized {
     pub(super) scene: Scene,
     pub(super) roles: Vec<(Handle, Kind)>,
@@ -41,7 +41,7 @@ pub(super) fn recognize(objects: &Objects, program: &Scene) -> Recognized {
             add_robot(objects, handle, shape, &mut found);
         }
     }
-    // Whoever creates a scene says where everything stands.
+    // A client that creates a scene gives the positions itself.
     found.scene.collisions |= !found.roles.is_empty();
     found
 }
@@ -164,7 +164,7 @@ fn outline(frame: &Isometry3<f64>, form: &Form) -> Body {
     Body { length: 2.0 * extent(0), width: 2.0 * extent(1) }
 }
 
-/// What a sensor sees, if it looks along the floor.
+/// Returns the mount of a sensor, if it looks along the floor.
 fn mount(objects: &Objects, handle: Handle, origin: &Isometry3<f64>) -> Option<Mount> {
     let PartKind::Sensor(sensor) = &objects.part(handle)?.kind else { return None };
     let frame = origin.inverse() * objects.rest_frame(handle)?;
@@ -192,7 +192,7 @@ fn add_obstacle(objects: &Objects, handle: Handle, shape: &ShapePart, found: &mu
     }
 }
 
-/// How high a shape rises, metres.
+/// Returns the height of a shape's top, metres.
 pub(super) fn top_of(frame: &Isometry3<f64>, form: &Form) -> f64 {
     let (low, high) = form.bounds();
     let corner = |corner: usize| {

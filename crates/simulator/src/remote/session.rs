@@ -58,10 +58,10 @@ pub struct Session {
     seen: Sightings,
     /// The number of steps that clients may still take; `None` is unlimited.
     allowance: Option<u32>,
-    /// What the id of every client must begin with.
+    /// The prefix that every client's id must have.
     token: Option<String>,
-    /// The connections of clients that were refused.
-    strangers: BTreeSet<u64>,
+    /// The connections whose clients were refused.
+    refused_connections: BTreeSet<u64>,
     server: Server,
     /// The text of the main script, if there is one.
     main_script: Option<String>,
@@ -129,7 +129,7 @@ impl Session {
             seen: Sightings::default(),
             allowance: None,
             token: None,
-            strangers: BTreeSet::new(),
+            refused_connections: BTreeSet::new(),
             server: Server::default(),
             main_script: Some(building::DEFAULT_MAIN_SCRIPT.to_owned()),
             physics_step: PHYSICS_STEP,
@@ -161,9 +161,9 @@ impl Session {
         self.token = Some(token.to_owned());
     }
 
-    /// How many connections had clients that were refused.
-    pub fn strangers(&self) -> usize {
-        self.strangers.len()
+    /// Returns the number of connections whose clients were refused.
+    pub fn refused_connections(&self) -> usize {
+        self.refused_connections.len()
     }
 
     /// From now on clients can only take steps that [`Session::allow`] permits.
@@ -179,7 +179,7 @@ impl Session {
         self.step_if_ready()
     }
 
-    /// Whether real time decides when steps are taken: no client steps, or steps are paced.
+    /// Returns whether real time decides when steps are taken: no client steps, or steps are paced.
     pub fn is_timed(&self) -> bool {
         self.state == State::Running && (self.allowance.is_some() || self.is_free_running())
     }
@@ -204,7 +204,7 @@ impl Session {
         self.clients.len() + self.legacy.len()
     }
 
-    /// Whether the simulation runs freely: no client steps it.
+    /// Returns whether the simulation runs freely: no client steps it.
     pub fn is_free_running(&self) -> bool {
         let nobody_steps = self.clients.values().all(|client| client.level == 0)
             && !self.legacy.values().any(LegacyClient::is_synchronous);
@@ -244,7 +244,7 @@ impl Session {
         answers
     }
 
-    /// Whether the server answers nothing at the moment.
+    /// Returns whether the server answers nothing at the moment.
     fn is_silent(&self) -> bool {
         self.state == State::Paused && self.server.is_silent_while_paused()
     }
@@ -327,7 +327,7 @@ impl Session {
 
     fn answer(&mut self, connection: u64, ticket: u64, now: Duration, request: &Request) -> Reply {
         if self.token.as_ref().is_some_and(|token| !request.uuid.starts_with(token)) {
-            self.strangers.insert(connection);
+            self.refused_connections.insert(connection);
             let refusal = "this simulator belongs to another run; start one of your own with `pydslrep sim`";
             return Reply::Now(Err(Failure(refusal.to_owned())));
         }
@@ -465,7 +465,7 @@ impl Session {
         self.state = State::Running;
     }
 
-    /// Simulates what clients have created since the latest start.
+    /// Simulates the objects that clients have created since the latest start.
     fn rebuild(&mut self) {
         let Some(scene) = self.objects.take_changes() else { return };
         // A world that cannot be simulated has no place here: its robots have wheels of a size.

@@ -1,4 +1,4 @@
-//! What sensors see beyond the simulated world: floors, and single objects on request.
+//! Sight of sensors beyond the simulated world: floors, and single objects on request.
 
 use ciborium::Value;
 use nalgebra::{Isometry3, Point3, Vector3};
@@ -22,7 +22,7 @@ struct Sensor {
     cone: f64,
 }
 
-/// What a sensor sees of an object.
+/// A sensor's sight of an object.
 pub(super) struct Seen {
     /// Metres.
     pub(super) distance: f64,
@@ -67,7 +67,7 @@ pub(super) fn nearest_floor(objects: &Objects, world: &World, handle: Handle) ->
     seen.min_by(|(_, a), (_, b)| a.distance.total_cmp(&b.distance))
 }
 
-/// Whether a created object is a floor that sensors see.
+/// Returns whether a created object is a floor that sensors see.
 pub(super) fn is_detectable_floor(objects: &Objects, handle: Handle) -> bool {
     let is_detectable = objects.part(handle).is_some_and(|part| part.special & info::SPECIAL_DETECTABLE != 0);
     let shape = shape_of(objects, handle).filter(|shape| shape.is_static && is_detectable);
@@ -115,7 +115,7 @@ fn sight_of(context: &CallContext, sensor: &Sensor, other: Handle) -> Option<See
 }
 
 impl Sensor {
-    /// What it sees of an obstacle, which is as high as the sensor.
+    /// Returns the sight of an obstacle, which is as high as the sensor.
     fn obstacle(&self, parts: Vec<Obstacle>) -> Option<Seen> {
         let direction = self.frame * Vector3::z();
         let at = self.frame.translation.vector;
@@ -130,7 +130,7 @@ impl Sensor {
         })
     }
 
-    /// What it sees of a floor: where the lower edge of its cone meets it.
+    /// Returns the sight of a floor: where the lower edge of the cone meets it.
     fn floor(&self, frame: &Isometry3<f64>, form: &Form) -> Option<Seen> {
         let direction = self.frame * Vector3::z();
         let at = self.frame.translation.vector;

@@ -1,4 +1,4 @@
-//! Obstacles that move: they push nothing and are stopped by nothing. What they run into is struck.
+//! Obstacles that move: they push nothing and are stopped by nothing. Robots that they run into are struck.
 
 use pydslrep_kinematics::Pose;
 use pydslrep_scene::{Body, Scene, Space, Trajectory};
@@ -28,7 +28,7 @@ pub struct Strike {
     pub pose: Pose,
     /// The index of the obstacle in the scene.
     pub obstacle: usize,
-    /// Whether the robot's wheels were turning.
+    /// True if the robot's wheels were turning.
     pub was_driving: bool,
 }
 
@@ -52,7 +52,7 @@ pub(super) struct Mover {
     contacts: Vec<Contact>,
 }
 
-/// What an obstacle does to a robot.
+/// The contact of an obstacle with a robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 enum Contact {
     #[default]
@@ -77,7 +77,7 @@ impl Mover {
         movers.collect()
     }
 
-    /// Whether it covers a part of a robot, which cannot move then.
+    /// Returns whether it covers a part of a robot, which cannot move then.
     pub(super) fn covers(&self, robot: usize) -> bool {
         self.contacts.get(robot) == Some(&Contact::Covered)
     }
@@ -93,8 +93,8 @@ impl Mover {
         let mut strikes = Vec::new();
         for (robot, bystander) in robots.iter().enumerate() {
             let Some(before) = self.contacts.get(robot).copied() else { continue };
-            let met = if before == Contact::Apart { self.meeting(bystander, from, to) } else { None };
-            strikes.extend(met.map(|time| Strike {
+            let struck = if before == Contact::Apart { self.meeting(bystander, from, to) } else { None };
+            strikes.extend(struck.map(|time| Strike {
                 time,
                 robot,
                 pose: bystander.pose,
@@ -103,7 +103,7 @@ impl Mover {
             }));
             let distance = self.distance(bystander, to, APART);
             self.contacts[robot] = match distance {
-                _ if before == Contact::Apart && met.is_none() => Contact::Apart,
+                _ if before == Contact::Apart && struck.is_none() => Contact::Apart,
                 Some(distance) if distance <= 0.0 => Contact::Covered,
                 Some(_) => Contact::Near,
                 None => Contact::Apart,

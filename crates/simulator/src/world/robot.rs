@@ -19,7 +19,7 @@ pub(super) struct RobotState {
     pub(super) pose: Pose,
     pub(super) twist: Twist,
     pub(super) joints: Vec<Joint>,
-    /// Whether something has run into it while it drove: it stays where it is until its wheels stand still.
+    /// True if something has run into it while it drove: it stays where it is until its wheels stand still.
     pub(super) is_struck: bool,
 }
 

@@ -87,7 +87,7 @@ impl Client {
         self.ask(0x1021, &[1], &[]).0
     }
 
-    /// Whether the simulator closes the connection.
+    /// Returns whether the simulator closes the connection.
     fn is_refused(&mut self) -> bool {
         loop {
             match self.stream.read(&mut [0; 1024]) {

@@ -15,7 +15,13 @@ from .dominant_orientation import (
 )
 from .odometer import Leg
 from .pose_graph import Constraint, PoseGraph
-from .relocalisation import MIN_POINTS, is_same, relocalise, seen_through
+from .relocalisation import (
+    MIN_POINTS,
+    is_same,
+    is_sure,
+    relocalise,
+    seen_through,
+)
 from .scan import Scan
 from .scan_matching import DRIFT_SIGMA, MapPoints, ScanMatch, match_scan
 from .surface import Complex, SurfacePoints
@@ -55,7 +61,8 @@ class GraphSlam:
     # oblique walls are likelier than an error of the estimate.
     MIN_INLIER_RATIO = 0.5
     MIN_TURNED_RATIO = 0.75
-    LARGE_TURN = 0.1  # radians
+    LARGE_TURN = 0.1  # radians, or standard deviations, which grow until walls tell it:
+    LARGE_ERROR = 1.5
 
     def __init__(self, calibration: Calibration) -> None:
         """`calibration` is learnt from scans; the odometer applies it."""
@@ -156,7 +163,10 @@ class GraphSlam:
         is_enough = len(points) >= MIN_POINTS
         seen = seen_through(points, here, self._map_points(near)) if is_enough else 0
         is_wrong = seen >= MAX_SEEN_THROUGH
-        is_doubtful = seen >= FEW_SEEN_THROUGH or self.is_lost
+        # A match nearby may be wrong if the robot may be elsewhere.
+        is_held = number > 0 and leg.was_held
+        is_wrong = is_wrong or (is_held and not (match and is_sure(match)))
+        is_doubtful = seen >= FEW_SEEN_THROUGH or self.is_lost or is_wrong
         self.has_slipped = False
         if is_doubtful or (is_enough and match is None):
             found = self._search(number, points)
@@ -222,20 +232,20 @@ class GraphSlam:
         self, points: SurfacePoints, middle_pose: Pose, drift_sigma: float
     ) -> DominantOrientation | None:
         """The dominant orientation of the walls in the scan's frame."""
-        within, guess = RIGHT_ANGLE / 2.0, 0.0
+        within, guess, large = RIGHT_ANGLE / 2.0, 0.0, math.inf
         if self._wall_direction is not None:
             turned = math.hypot(
                 self.ROTATION_ERROR * math.sqrt(self._unoriented_travel),
                 self.calibration.turn.sigma * self._unoriented_turn,
             )
             within = min(within, 0.03 + 3.0 * turned)
+            large = max(self.LARGE_TURN, self.LARGE_ERROR * turned)
             guess = self._wall_direction - middle_pose.theta
         found = find_dominant_orientation(points, guess, within, drift_sigma)
         if found is None or abs(found.drift) > MAX_DRIFTS * drift_sigma:
             return None
         turn = abs(math.remainder(found.angle - guess, RIGHT_ANGLE))
-        is_large = self._wall_direction is not None and turn > self.LARGE_TURN
-        least = self.MIN_TURNED_RATIO if is_large else self.MIN_INLIER_RATIO
+        least = self.MIN_TURNED_RATIO if turn > large else self.MIN_INLIER_RATIO
         return found if turn <= within and found.inlier_ratio >= least else None
 
     def _correct_heading(

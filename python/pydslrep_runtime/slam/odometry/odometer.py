@@ -16,6 +16,11 @@ class Leg:
     travel: float  # m, forward or backward, with what stands for other uncertainties
     turn: float | None = None  # radians, to the left if positive; None if it is wrong
 
+    @property
+    def was_held(self) -> bool:
+        """Whether something has held the robot, so that its wheels report too much."""
+        return self.turn is None
+
 
 class Odometer:
     """The pose of a two-wheel robot, integrated from the rotation of its wheels."""

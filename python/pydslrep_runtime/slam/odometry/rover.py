@@ -16,6 +16,7 @@ from .graph_slam import GraphSlam
 from .odometer import Leg, Odometer
 from .scan import Scan
 from .scan_log import ScanLog
+from .way_ahead import WayAhead
 
 if TYPE_CHECKING:
     from ...motion import Motion
@@ -44,6 +45,7 @@ class OdometryRover(SlamRover):
         self._wheel_turns: list[float] = []  # radians, since the scan has begun
         self._wheel_turn = 0.0  # radians, up to the last keyframe
         self._blocked_travel = 0.0  # m for a blocked turn at the last keyframe
+        self._way: WayAhead | None = None  # that the robot drives along
         self._slam = GraphSlam(self.calibration)
         self._log = ScanLog()
         self._grid_keyframes: list[Pose] = []  # the poses that the grid is built from
@@ -56,7 +58,24 @@ class OdometryRover(SlamRover):
     async def drive_to(self, goal: Position, should_stop: Callable[[], bool]) -> bool:
         """Turns to a goal and drives there, or until an obstacle is near."""
         await self._make_room()
-        return await super().drive_to(goal, should_stop)
+        try:
+            return await super().drive_to(goal, should_stop)
+        finally:
+            self._way = None
+
+    def _look_along(self, bearing: float) -> None:
+        """Remembers what the robot has seen ahead since the last keyframe."""
+        here = self.pose()
+        self._way = WayAhead(Pose(here.x, here.y, bearing), self.radius)
+        for there, readings in self._log.recent():
+            self._way.add(there, readings)
+        self._check_way(self._way, here)
+
+    def _check_way(self, way: WayAhead, here: Pose) -> None:
+        """Records an obstacle that the robot is near to, whether it sees it now or not."""
+        if way.is_near_end(here, self.radius + SAFETY_MARGIN):
+            end = way.end()
+            self._obstacle = end.x, end.y
 
     async def _make_room(self) -> None:
         """Drives back or ahead to where the robot can turn without touching a wall.
@@ -171,6 +190,9 @@ class OdometryRover(SlamRover):
         for reading in readings:
             self._check_obstacle(reading, here)
             self.grid.add_reading(reading.transformed_by(here))
+        if self._way:
+            self._way.add(here, readings)
+            self._check_way(self._way, here)
         return True
 
     def _mark_obstacle(self, x: float, y: float) -> None:

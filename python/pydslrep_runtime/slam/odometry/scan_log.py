@@ -36,6 +36,13 @@ class ScanLog:
         seen = Pose(x, y, 0.0).relative_to(here)
         self.add(here, [Reading(seen, 0.0, 0.0, is_hit=True)])
 
+    def recent(self) -> Iterable[tuple[Pose, Sequence[Reading]]]:
+        """The poses since the last keyframe, in the world, with readings."""
+        return (
+            (pose.transformed_by(self._keyframe), readings)
+            for pose, readings in self._open_leg
+        )
+
     def obstacles_near(self, here: Pose) -> list[complex]:
         """Where readings since the last keyframe have hit something near, from a pose."""
         origin = self._keyframe.relative_to(here)

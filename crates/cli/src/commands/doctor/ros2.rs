@@ -1,4 +1,4 @@
-//! `pydslrep doctor --target ros2`: what is there of robots in ROS 2, and what is wrong with it. A Python process
+//! `pydslrep doctor --target ros2`: the robots found in ROS 2, and their problems. A Python process
 //! (`pydslrep_runtime.ros2_tasks`) looks, as only that knows ROS 2.
 
 use std::process::ExitCode;
@@ -20,7 +20,7 @@ use crate::run::scene_tasks::carry_out_in_own_python;
 
 const MODULE: &str = "pydslrep_runtime.ros2_tasks";
 
-/// What stands in the table where there is nothing.
+/// The table cell for a missing value.
 const NOTHING: &str = "–";
 
 #[derive(Debug, Serialize)]
@@ -31,15 +31,15 @@ struct Request {
 
 #[derive(Debug, Deserialize)]
 struct Answer {
-    /// Whether there is anything of others.
+    /// True if topics of other nodes were found.
     reached: bool,
     topics: Vec<Topic>,
     findings: Vec<Finding>,
-    /// What a turn has shown.
+    /// The findings of the test drive.
     notes: Vec<String>,
 }
 
-/// What is there of a topic.
+/// A topic, as far as it is known.
 #[derive(Debug, Deserialize)]
 struct Topic {
     #[serde(rename = "topic")]
@@ -118,14 +118,14 @@ fn check(arguments: &Arguments, request: &Request, all_well: &str) -> Result<Exi
         return Ok(ExitCode::from(interrupt::EXIT_CODE));
     };
     if !arguments.json {
-        output::print(&told(&answer, request.robots.is_empty()))?;
+        output::print(&report(&answer, request.robots.is_empty()))?;
     }
     print(arguments, &answer.findings, all_well)?;
     Ok(exit_code(answer.reached, &answer.findings))
 }
 
-/// The topics, one line each, and what a turn has shown.
-fn told(answer: &Answer, is_list: bool) -> String {
+/// The topics, one line each, and the findings of the test drive.
+fn report(answer: &Answer, is_list: bool) -> String {
     if answer.topics.is_empty() {
         return String::new();
     }

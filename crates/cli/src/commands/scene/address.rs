@@ -36,7 +36,7 @@ pub(super) struct Simulator<'a> {
 }
 
 impl Address {
-    /// The simulator that is meant, by the settings of a program or, without one, of the current folder.
+    /// The chosen simulator, by the settings of a program or, without one, of the current folder.
     pub(super) fn with(&self, settings: &SimulatorAddress) -> Simulator<'_> {
         Simulator {
             host: self.host.clone().unwrap_or_else(|| settings.host.clone()),

@@ -1,4 +1,4 @@
-//! `pydslrep scene pull`: a program and its scene file from what is in a running `CoppeliaSim`.
+//! `pydslrep scene pull`: a program and its scene file from the scene of a running `CoppeliaSim`.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -37,7 +37,7 @@ pub(crate) struct Arguments {
 #[derive(Debug, Deserialize)]
 struct Answer {
     scene: Pulled,
-    /// What was not understood.
+    /// The parts of the scene that were not recognised.
     unclear: Vec<String>,
 }
 
@@ -91,7 +91,7 @@ fn write(folder: &Path, name: &str, environment: &str, scene: &Pulled, port: u16
     ))
 }
 
-/// Checks what is to be written as an editor would.
+/// Checks the files to write as an editor would.
 fn check(folder: &Path, program: &str, environment: &str, scene: &str) -> Result<(), Failure> {
     let place = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
     let (program_path, scene_path) =

@@ -1,4 +1,4 @@
-//! What was read out of a simulator, as a program and as a scene file.
+//! The scene read from a simulator, as a program and as a scene file.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -12,7 +12,7 @@ use serde::Deserialize;
 pub(super) struct Pulled {
     pub(super) robots: Vec<Robot>,
     pub(super) obstacles: Vec<Obstacle>,
-    /// What cannot be written as a program.
+    /// The parts that cannot be written as a program.
     #[serde(skip)]
     pub(super) unclear: Vec<String>,
 }

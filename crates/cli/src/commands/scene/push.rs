@@ -40,7 +40,7 @@ pub(crate) struct Arguments {
 
 #[derive(Debug, Deserialize)]
 struct Answer {
-    /// What else was done, or could not be.
+    /// Further changes, and those that failed.
     notes: Vec<String>,
 }
 

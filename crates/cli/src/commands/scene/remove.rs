@@ -1,4 +1,4 @@
-//! `pydslrep scene remove`: takes away what `push` has made.
+//! `pydslrep scene remove`: removes the objects that `push` has made.
 
 use std::process::ExitCode;
 
@@ -29,9 +29,9 @@ pub(crate) struct Arguments {
 
 #[derive(Debug, Deserialize)]
 struct Answer {
-    /// How many objects.
+    /// The number of objects.
     removed: usize,
-    /// Whether the main script was removed, too.
+    /// True if the main script was removed, too.
     main_script: bool,
 }
 

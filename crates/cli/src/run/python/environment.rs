@@ -22,7 +22,7 @@ use crate::report::output;
 const CREATE_LIMIT: Duration = Duration::from_secs(120);
 const INSTALL_LIMIT: Duration = Duration::from_secs(600);
 
-/// How often a run looks whether another one has finished its preparations.
+/// The interval at which a run checks whether another one has finished its preparations.
 const LOCK_PERIOD: Duration = Duration::from_millis(100);
 
 /// The folders of environments that are not complete begin with this.
@@ -119,7 +119,7 @@ impl Environment {
         }
     }
 
-    /// Removes what interrupted runs have left. Whoever holds the lock is the only one who creates environments.
+    /// Removes the leftovers of interrupted runs. Only the holder of the lock creates environments.
     fn remove_leftovers(&self) {
         for entry in fs::read_dir(&self.cache).into_iter().flatten().flatten() {
             if entry.file_name().to_string_lossy().starts_with(UNFINISHED) {

@@ -25,7 +25,7 @@ const INSTALL_PYTHON: &str = if cfg!(target_os = "macos") {
     "sudo apt install python3 python3-venv"
 };
 
-/// What to do if there is no suitable Python.
+/// Returns the advice if there is no suitable Python.
 fn install_python() -> String {
     let (major, minor) = OLDEST_PYTHON;
     format!(

@@ -1,4 +1,4 @@
-//! What an environment consisted of when it was complete.
+//! The manifest of a complete environment.
 
 use std::collections::BTreeMap;
 use std::fs::{self, Metadata};
@@ -10,8 +10,8 @@ use serde::{Deserialize, Serialize};
 
 const NAME: &str = "installed.json";
 
-/// The files of its packages, by their path from the environment. Whoever changes, truncates or replaces a file changes
-/// its size or its time.
+/// The files of its packages, by their path from the environment. Changing, truncating or replacing a file changes its
+/// size or its time.
 #[derive(Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 struct Manifest(BTreeMap<String, Stamp>);
 
@@ -33,7 +33,7 @@ pub(super) fn write(home: &Path) -> io::Result<()> {
     fs::write(home.join(NAME), serde_json::to_vec(&manifest)?)
 }
 
-/// What is wrong with an environment, if anything is.
+/// Returns the first damage of an environment, if there is any.
 pub(super) fn damage(home: &Path) -> Option<String> {
     let recorded = fs::read(home.join(NAME)).ok().and_then(|bytes| serde_json::from_slice(&bytes).ok());
     let Some(Manifest(recorded)) = recorded else { return Some(format!("{NAME} cannot be read")) };

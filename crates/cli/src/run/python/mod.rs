@@ -18,16 +18,16 @@ use self::environment::Environment;
 use crate::failure::Failure;
 use crate::run::reporter::Reporter;
 
-/// What is installed for a script.
+/// The packages installed for a script.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Packages {
-    /// What talks to `CoppeliaSim`.
+    /// The client library of `CoppeliaSim`.
     Client,
-    /// And what slam by odometry computes with.
+    /// The same and the packages for slam by odometry.
     ClientAndOdometry,
     /// `MuJoCo`, instead of the client.
     MuJoCo,
-    /// And what slam by odometry computes with.
+    /// The same and the packages for slam by odometry.
     MuJoCoAndOdometry,
 }
 
@@ -72,11 +72,11 @@ impl Packages {
     }
 }
 
-/// Who is told how the preparations get on.
+/// The recipient of the preparations' progress.
 #[derive(Clone, Copy)]
 pub(crate) struct Watcher<'a> {
     pub(crate) reporter: &'a Reporter,
-    /// Whether people see no progress.
+    /// True if progress is hidden from people.
     pub(crate) quiet: bool,
 }
 
@@ -115,7 +115,7 @@ pub(crate) struct Description {
     pub(crate) odometry: String,
 }
 
-/// What scripts run with; changes nothing.
+/// Returns the Python and the packages that scripts run with; changes nothing.
 ///
 /// # Errors
 /// If there is no suitable Python.

@@ -11,7 +11,7 @@ use super::{sentence, workspace_edit};
 use crate::documents::Document;
 use crate::state::State;
 
-/// What to fix: the data of an action until it is chosen, because finding the edits means trying them.
+/// The problems to fix: the data of an action until it is chosen, because computing the edits means trying them.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub(crate) struct FixAllOf {

@@ -10,8 +10,8 @@ use tower_lsp::ls_types::{ProgressToken, WorkDoneProgressCreateParams, request};
 use crate::children::{ChildEvent, KillOnDrop, Running};
 use crate::server::Server;
 
-/// How many lines of a failed child's output are part of the error.
-const MOST_LINES: usize = 50;
+/// The maximum number of lines of a failed child's output that are part of the error.
+const MAX_LINES: usize = 50;
 
 /// A child that has ended.
 #[derive(Debug, Default)]
@@ -20,13 +20,13 @@ pub(super) struct Ended {
     pub(super) code: Option<i32>,
     /// Its whole standard output.
     pub(super) printed: String,
-    /// The end of what it said on standard error, in lines.
-    pub(super) said: Vec<String>,
-    /// What a run has reported.
+    /// The last lines of its standard error.
+    pub(super) stderr: Vec<String>,
+    /// The report of a run.
     pub(super) report: Report,
 }
 
-/// What is left of the events of a run in its end.
+/// The events of a run that matter at its end.
 #[derive(Debug, Default)]
 pub(super) struct Report {
     /// The result in numbers.
@@ -38,7 +38,7 @@ pub(super) struct Report {
 }
 
 impl Report {
-    /// Reads a line of standard output. Returns what to show of it while the run goes on; `None` if nothing.
+    /// Reads a line of standard output. Returns the text to show while the run continues, if any.
     fn read(&mut self, line: &str) -> Option<String> {
         match RunEvent::parse(line)? {
             // Of the preparations: while robots drive, nothing moves but they.
@@ -63,7 +63,7 @@ impl Report {
     }
 }
 
-/// What a child tells while it runs.
+/// The form in which a child reports progress.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Tells {
     /// Lines on standard error.
@@ -88,7 +88,7 @@ pub(super) async fn follow(
         }
         None => None,
     };
-    let mut said = VecDeque::new();
+    let mut stderr = VecDeque::new();
     let mut ended = Ended::default();
     while let Some(event) = events.next().await {
         match event {
@@ -103,9 +103,9 @@ pub(super) async fn follow(
                 if let (Some(progress), Tells::Lines) = (&progress, tells) {
                     progress.report_with_message(line.clone(), None).await;
                 }
-                said.push_back(line);
-                if said.len() > MOST_LINES {
-                    said.pop_front();
+                stderr.push_back(line);
+                if stderr.len() > MAX_LINES {
+                    stderr.pop_front();
                 }
             }
         }
@@ -114,7 +114,7 @@ pub(super) async fn follow(
     if let Some(progress) = progress {
         progress.finish().await;
     }
-    Ended { said: said.into(), ..ended }
+    Ended { stderr: stderr.into(), ..ended }
 }
 
 /// The token of a child's progress: the client's, otherwise one of ours; `None` where the client shows none.

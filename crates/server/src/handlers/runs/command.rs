@@ -23,7 +23,8 @@ pub(crate) async fn run(
     let title = format!("{} {}", if is_run { "Running" } else { "Planning" }, which.environment);
     let token = params.work_done_progress_params.work_done_token;
     let tells = if is_run { Tells::Events } else { Tells::Lines };
-    let Ended { code, printed, said, report } = follow(&server, token, title, tells, (running, events)).await;
+    let Ended { code, printed, stderr, report } =
+        follow(&server, token, title, tells, (running, events)).await;
     if is_run {
         // The path up to a failure is worth showing too.
         let State { driven, pages, .. } = &mut *server.state();
@@ -37,8 +38,8 @@ pub(crate) async fn run(
         let _ = std::fs::remove_file(&picture);
         let _ = std::fs::remove_file(runs::replay(&picture));
         let error = match &report.failure {
-            Some(failure) => failed_run::error(&server.state(), &which, failure, &said),
-            None => runs::ended_badly(code, &said),
+            Some(failure) => failed_run::error(&server.state(), &which, failure, &stderr),
+            None => runs::ended_badly(code, &stderr),
         };
         return Err(error);
     }

@@ -9,13 +9,18 @@ use crate::chosen::ChosenEnvironment;
 use crate::handlers::scripts::{Cause, environment, failure, with_cause};
 use crate::state::State;
 
-/// The error of a run, with the place of the action that failed if that is still there. `said` is what the command wrote to
-/// standard error.
-pub(super) fn error(state: &State, which: &ChosenEnvironment, failed: &RunFailure, said: &[String]) -> Error {
+/// The error of a run, with the place of the action that failed if that is still there. `stderr` has the lines that the
+/// command wrote to standard error.
+pub(super) fn error(
+    state: &State,
+    which: &ChosenEnvironment,
+    failed: &RunFailure,
+    stderr: &[String],
+) -> Error {
     match failed.class {
         FailureClass::Interrupted => cancelled("the run was cancelled"),
         // The problems are there.
-        FailureClass::Program => ended_badly(None, said),
+        FailureClass::Program => ended_badly(None, stderr),
         FailureClass::Crash => failure(failed.output.clone().unwrap_or_else(|| words(failed))),
         FailureClass::Action | FailureClass::Setup | FailureClass::Simulator | FailureClass::File => {
             located(state, which, failed).unwrap_or_else(|| failure(words(failed)))

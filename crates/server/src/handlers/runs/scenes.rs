@@ -20,7 +20,7 @@ use crate::server::Server;
 /// Builds the scene of an environment.
 pub(crate) const PUSH: &str = "pydslrep.pushScene";
 
-/// Removes what was built for an environment.
+/// Removes the objects that were built for an environment.
 pub(crate) const REMOVE: &str = "pydslrep.removeScene";
 
 /// Checks the scene against an environment.
@@ -34,19 +34,19 @@ const REPLACE: &str = "Replace Them";
 const KEEP: &str = "Keep Them";
 
 /// So many findings are in the message; all are in the answer.
-const MOST_FINDINGS: usize = 3;
+const MAX_FINDINGS: usize = 3;
 
 /// The argument of [`PUSH`].
 #[derive(Debug, Deserialize)]
 pub(crate) struct Push {
     #[serde(flatten)]
     which: ChosenEnvironment,
-    /// Whether to replace what was built before, without a question.
+    /// True if an earlier build is replaced without asking.
     #[serde(default)]
     replace: bool,
 }
 
-/// What `pydslrep` prints with `--json`.
+/// The output of `pydslrep` with `--json`.
 #[derive(Debug, Deserialize)]
 #[serde(untagged)]
 enum Printed<T> {
@@ -75,7 +75,7 @@ struct Finding {
     help: String,
 }
 
-/// [`PUSH`]: builds the scene; asks before it replaces what was built before.
+/// [`PUSH`]: builds the scene; asks before it replaces an earlier build.
 ///
 /// # Errors
 ///
@@ -142,7 +142,7 @@ pub(crate) async fn remove(
     }
 }
 
-/// [`CHECK`]: shows what is wrong with the scene, and what to do about it.
+/// [`CHECK`]: shows the problems of the scene, with advice.
 ///
 /// # Errors
 ///
@@ -167,12 +167,12 @@ pub(crate) async fn check(
     Ok(Some(serde_json::json!({ "findings": findings })))
 }
 
-/// What to start.
+/// A command to start.
 #[derive(Debug, Clone, Copy)]
 struct Child<'a> {
     task: &'a [&'a str],
     options: &'a [&'a str],
-    /// Whether it is about a program, and not only about an environment's name.
+    /// True if it is about a program, not only about an environment's name.
     has_program: bool,
 }
 
@@ -207,7 +207,7 @@ impl Child<'_> {
     }
 }
 
-/// Whether to replace what was built before.
+/// Asks whether to replace an earlier build.
 fn question(place: &str, error: &str) -> ShowMessageRequestParams {
     let answer = |title: &str| MessageActionItem { title: title.to_owned(), properties: HashMap::new() };
     ShowMessageRequestParams {
@@ -223,7 +223,7 @@ fn unanswered<T>(refusal: Option<Printed<T>>, ended: &Ended) -> tower_lsp::jsonr
         _ if ended.code == Some(INTERRUPTED) => cancelled("the command was cancelled"),
         Some(Printed::Refusal { error, help: Some(help), .. }) => failure(format!("{error}; {help}")),
         Some(Printed::Refusal { error, .. }) => failure(error),
-        _ => ended_badly(ended.code, &ended.said),
+        _ => ended_badly(ended.code, &ended.stderr),
     }
 }
 
@@ -239,9 +239,9 @@ fn report(findings: &[Finding], place: &str) -> (MessageType, String) {
     };
     let worst =
         ["error", "warning"].iter().find(|word| findings.iter().any(|found| found.severity == **word));
-    let mut lines: Vec<String> = findings.iter().take(MOST_FINDINGS).map(Finding::line).collect();
-    if findings.len() > MOST_FINDINGS {
-        let more = findings.len() - MOST_FINDINGS;
+    let mut lines: Vec<String> = findings.iter().take(MAX_FINDINGS).map(Finding::line).collect();
+    if findings.len() > MAX_FINDINGS {
+        let more = findings.len() - MAX_FINDINGS;
         lines.push(format!("{more} more: `pydslrep doctor` lists all"));
     }
     (kind(worst.copied().unwrap_or_default()), lines.join("\n"))

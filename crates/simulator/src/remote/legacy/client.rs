@@ -27,12 +27,12 @@ pub(super) struct Stream {
 }
 
 impl Client {
-    /// Whether steps wait for this client.
+    /// Returns whether steps wait for this client.
     pub(in super::super) fn is_synchronous(&self) -> bool {
         self.synchronous
     }
 
-    /// Whether it has triggered the next step.
+    /// Returns whether it has triggered the next step.
     pub(in super::super) fn has_triggered(&self) -> bool {
         self.triggered
     }

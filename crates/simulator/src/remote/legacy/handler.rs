@@ -18,7 +18,7 @@ const START_PAUSE_STOP: u16 = 0x1007;
 pub struct LegacyResponse {
     /// The reply, for the client.
     pub reply: Vec<u8>,
-    /// Whether the client disconnects after this message.
+    /// True if the client disconnects after this message.
     pub is_last: bool,
     /// Answers to other clients that waited for this one.
     pub answers: Vec<Answer>,
