@@ -27,32 +27,32 @@ def looking_ahead(robot: SlippingRobot) -> OdometryRover:
     return exploring
 
 
-def test_a_robot_remembers_the_end_of_a_wall_that_has_left_its_cone() -> None:
-    # In front of its right half: from 0.28 m on, the cone of its sensor is too narrow.
-    wall = Wall((1.3, 0.9), (2.4, 0.9))
-    robot = SlippingRobot(Rooms(2.5, 2.0, start=(0.5, 1.0), walls=[wall]), noise=0.01)
+def drive(goal: float, *walls: Wall) -> tuple[bool, SlippingRobot]:
+    """Drives from 0.5 m along the x axis in a room; whether it got there, and the robot."""
+    robot = SlippingRobot(Rooms(2.5, 2.0, start=(0.5, 1.0), walls=[*walls]), noise=0.01)
     exploring = looking_ahead(robot)
     robot.touched.clear()
-    assert not at_once(exploring.drive_to((1.3, 1.0), lambda: False))
+    return at_once(exploring.drive_to((goal, 1.0), lambda: False)), robot
+
+
+def test_a_robot_remembers_the_end_of_a_wall_that_has_left_its_cone() -> None:
+    # In front of its right half: from 0.28 m on, the cone of its sensor is too narrow.
+    arrived, robot = drive(1.3, Wall((1.3, 0.9), (2.4, 0.9)))
+    assert not arrived
     assert not robot.touched
     assert robot.here.x > 0.9
 
 
 def test_a_robot_remembers_what_it_has_seen_before_it_drives() -> None:
     # So near that only a look aside has seen it.
-    wall = Wall((0.8, 0.9), (2.4, 0.9))
-    robot = SlippingRobot(Rooms(2.5, 2.0, start=(0.5, 1.0), walls=[wall]), noise=0.01)
-    exploring = looking_ahead(robot)
-    robot.touched.clear()
-    assert not at_once(exploring.drive_to((1.0, 1.0), lambda: False))
+    arrived, robot = drive(1.0, Wall((0.8, 0.9), (2.4, 0.9)))
+    assert not arrived
     assert not robot.touched
 
 
 def test_what_is_beside_the_way_does_not_stop_a_robot() -> None:
-    walls = [Wall((1.3, y), (2.4, y)) for y in (0.7, 1.3)]
-    robot = SlippingRobot(Rooms(2.5, 2.0, start=(0.5, 1.0), walls=walls), noise=0.01)
-    exploring = looking_ahead(robot)
-    assert at_once(exploring.drive_to((1.3, 1.0), lambda: False))
+    arrived, _ = drive(1.3, *(Wall((1.3, y), (2.4, y)) for y in (0.7, 1.3)))
+    assert arrived
 
 
 def test_what_may_be_beside_the_way_is_not_ahead() -> None:

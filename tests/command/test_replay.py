@@ -161,6 +161,21 @@ def test_topics_and_frames_are_those_of_the_scene(
     assert {each.range for topic, each in read if topic == "/ir/skirt"} == {math.inf}
 
 
+def test_a_bumper_that_is_pressed_is_nearer_than_it_can_measure(
+    command: str, folder: pathlib.Path
+) -> None:
+    (folder / "yard.scene.toml").write_text(SCENE, encoding="utf-8")
+    program = PROGRAM.replace(
+        "60 centimeters until { skirt, front }", "until { skirt }"
+    )
+    (folder / "yard.pyr").write_text(program, encoding="utf-8")
+    say(command, folder, "run", "yard.pyr", "--no-progress", "--trace", "run.mcap")
+    found = messages(folder / "run.mcap")
+    skirt = [each.range for topic, _, each in found if topic == "/ir/skirt"]
+    assert skirt[0] == math.inf
+    assert skirt[-1] == -math.inf
+
+
 @pytest.mark.parametrize("trace", ["run.jsonl", "run.mcap"])
 def test_a_replay_says_what_the_run_said(
     command: str, folder: pathlib.Path, trace: str
@@ -236,8 +251,13 @@ def record(
                 writer.write(connections[topic], round(now * 1e9), raw)
 
 
-def compress(bag: pathlib.Path, into: pathlib.Path, kind: CompressionType) -> None:
-    """Writes a bag again, its parts compressed."""
+def compress(
+    bag: pathlib.Path,
+    into: pathlib.Path,
+    kind: CompressionType,
+    times: tuple[float, float] = (0.0, math.inf),
+) -> None:
+    """Writes a bag again, its parts compressed, or only what is between two times in seconds."""
     with bag.open("rb") as old, into.open("wb") as new:
         writer = McapWriter(new, compression=kind)
         writer.start(profile="ros2")
@@ -245,6 +265,8 @@ def compress(bag: pathlib.Path, into: pathlib.Path, kind: CompressionType) -> No
         channels: dict[int, int] = {}
         for schema, channel, message in make_reader(old).iter_messages():
             assert schema is not None
+            if not times[0] <= message.log_time / 1e9 < times[1]:
+                continue
             if schema.id not in schemas:
                 schemas[schema.id] = writer.register_schema(
                     schema.name, schema.encoding, schema.data
@@ -271,6 +293,19 @@ def test_compressed_bags_are_read(
     replayed = [
         say(command, folder, "replay", bag, "yard.pyr")
         for bag in ("run.mcap", "other.mcap")
+    ]
+    assert replayed[0] == replayed[1]
+
+
+def test_a_bag_may_consist_of_several_files(command: str, folder: pathlib.Path) -> None:
+    """As recorders number them: the tenth comes after the second."""
+    say(command, folder, "run", "yard.pyr", "--no-progress", "--trace", "run.mcap")
+    (folder / "lap").mkdir()
+    for name, times in {"lap_2": (0.0, 4.0), "lap_10": (4.0, math.inf)}.items():
+        part = folder / "lap" / f"{name}.mcap"
+        compress(folder / "run.mcap", part, CompressionType.ZSTD, times)
+    replayed = [
+        say(command, folder, "replay", bag, "yard.pyr") for bag in ("run.mcap", "lap")
     ]
     assert replayed[0] == replayed[1]
 
