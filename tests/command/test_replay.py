@@ -298,7 +298,7 @@ def test_compressed_bags_are_read(
 
 
 def test_a_bag_may_consist_of_several_files(command: str, folder: pathlib.Path) -> None:
-    """As recorders number them: the tenth comes after the second."""
+    """In whatever order a folder lists them: here, the second one is first by its name."""
     say(command, folder, "run", "yard.pyr", "--no-progress", "--trace", "run.mcap")
     (folder / "lap").mkdir()
     for name, times in {"lap_2": (0.0, 4.0), "lap_10": (4.0, math.inf)}.items():

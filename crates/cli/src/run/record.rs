@@ -129,12 +129,13 @@ fn from_zero(mut records: Vec<TraceRecord>) -> Vec<TraceRecord> {
     records
 }
 
-/// The files of a bag, in the order in which they were recorded: they are numbered.
+/// The files of a bag. Their order does not matter: messages have times.
 fn files_of_bag(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     let entries = fs::read_dir(folder)
         .map_err(|error| Failure::new(format!("cannot read {}: {error}", folder.display())))?;
     let mut files: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
-    files.sort_by_key(|file| (file.as_os_str().len(), file.clone()));
+    // The first one that cannot be read is the same each time.
+    files.sort();
     let mut bags: Vec<PathBuf> =
         files.iter().filter(|file| super::trace_file::is_bag(file)).cloned().collect();
     if bags.is_empty() {
