@@ -299,15 +299,18 @@ def test_compressed_bags_are_read(
 
 def test_a_bag_may_consist_of_several_files(command: str, folder: pathlib.Path) -> None:
     """In whatever order a folder lists them: here, the second one is first by its name."""
+    (folder / "yard.scene.toml").write_text(SCENE, encoding="utf-8")
     say(command, folder, "run", "yard.pyr", "--no-progress", "--trace", "run.mcap")
     (folder / "lap").mkdir()
     for name, times in {"lap_2": (0.0, 4.0), "lap_10": (4.0, math.inf)}.items():
         part = folder / "lap" / f"{name}.mcap"
         compress(folder / "run.mcap", part, CompressionType.ZSTD, times)
-    replayed = [
-        say(command, folder, "replay", bag, "yard.pyr") for bag in ("run.mcap", "lap")
-    ]
-    assert replayed[0] == replayed[1]
+    pictures = []
+    for bag in ("run.mcap", "lap"):
+        say(command, folder, "replay", bag, "yard.pyr", "--picture", f"{bag}.svg")
+        pictures.append((folder / f"{bag}.svg").read_text(encoding="utf-8"))
+    # The path, and the dots that sensors saw.
+    assert pictures[0] == pictures[1]
 
 
 ODOMETRY = "nav_msgs/msg/Odometry"
