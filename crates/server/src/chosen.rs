@@ -1,5 +1,7 @@
 //! Which environment of which program a client means, and which paths it has.
 
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
 use pydslrep_analysis::Fingerprint;
 use pydslrep_ide::PlannedPath;
 use serde::{Deserialize, Serialize};
@@ -17,6 +19,42 @@ pub(crate) struct ChosenEnvironment {
     pub(crate) environment: String,
 }
 
+/// The planned paths that the client and pages have, and are notified of; clones share them.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct WatchedPaths(Arc<Mutex<Vec<Watched>>>);
+
+impl WatchedPaths {
+    /// Notes who wants to know when a path changes, even if that is before it is planned.
+    pub(crate) fn watch(&self, which: &ChosenEnvironment, audience: Audience) {
+        let mut all = self.lock();
+        if all.iter().all(|watched| !watched.is(which, audience)) {
+            let which = which.clone();
+            all.push(Watched { audience, which, fingerprint: None, sent: Sent::Long });
+        }
+    }
+
+    /// Notes that an audience has a path now.
+    pub(crate) fn set(&self, watched: Watched) {
+        let mut all = self.lock();
+        all.retain(|other| !other.is(&watched.which, watched.audience));
+        all.push(watched);
+    }
+
+    /// Returns all paths, and forgets them.
+    pub(crate) fn take(&self) -> Vec<Watched> {
+        std::mem::take(&mut *self.lock())
+    }
+
+    /// Notes that any path may have changed.
+    pub(crate) fn forget_fingerprints(&self) {
+        self.lock().iter_mut().for_each(|watched| watched.fingerprint = None);
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Vec<Watched>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
 /// A planned path that the client or a page has.
 #[derive(Debug)]
 pub(crate) struct Watched {
@@ -32,7 +70,7 @@ pub(crate) struct Watched {
 
 impl Watched {
     /// Returns whether it is the path of this environment for this audience.
-    pub(crate) fn is(&self, which: &ChosenEnvironment, audience: Audience) -> bool {
+    fn is(&self, which: &ChosenEnvironment, audience: Audience) -> bool {
         self.audience == audience && self.which == *which
     }
 }

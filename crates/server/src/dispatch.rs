@@ -26,9 +26,11 @@ use tower_service::Service;
 use crate::client::ClientFeatures;
 use crate::log::log;
 use crate::message::{Body, Outbox, WriteJson, encode, encode_answer, encode_error};
-use crate::reader::{Reader, yield_now};
+use crate::page::Audience;
+use crate::reader::yield_now;
 use crate::server::{Server, Stage};
 use crate::state::State;
+use crate::view::View;
 use crate::work::{FileWork, SHORT, Work};
 
 /// The protocol's code for requests that come too early.
@@ -51,7 +53,6 @@ pub(crate) type Outcome = std::result::Result<Option<Body>, ExitedError>;
 #[derive(Default)]
 pub(crate) struct Table {
     rows: FxHashMap<&'static str, Row>,
-    announcements: Vec<Announce>,
 }
 
 impl fmt::Debug for Table {
@@ -60,239 +61,256 @@ impl fmt::Debug for Table {
     }
 }
 
-struct Row {
-    /// True for a request, which has an id and is answered.
-    is_request: bool,
+/// A method, with its handler.
+pub(crate) struct Row {
+    method: &'static str,
     /// When it may come.
     stages: &'static [Stage],
+    /// Tells clients about it; nothing where they send it anyway, or with another method.
+    announce: Option<Announce>,
     handler: Handler,
 }
 
 enum Handler {
-    /// The framework's own, which begins or ends the session.
-    Framework,
+    /// The framework's own request, which begins or ends the session.
+    FrameworkRequest,
+    /// The framework's own notification.
+    FrameworkNotification,
     Request(RequestHandler),
     Notification(NotificationHandler),
 }
 
-type RequestHandler = Box<dyn Fn(&Server, Id, Option<Value>) -> Reply + Send + Sync>;
+type RequestHandler = Box<dyn Fn(&Server, &Caller, Option<Value>) -> Reply + Send + Sync>;
 
 type NotificationHandler = Box<dyn Fn(&Server, Option<Value>) -> Reply + Send + Sync>;
 
-/// The methods that add rows. A handler's type says whether it changes the state or only reads it, the name of the
-/// method where it runs.
-impl Table {
-    /// A request that reads a place or little more: on the loop.
-    pub(crate) fn read<R, A>(&mut self, handler: fn(&State, &R::Params) -> A, announce: Announce)
-    where
-        R: request::Request,
-        A: Answer<R::Result> + 'static,
-    {
-        self.request::<R>(announce, move |server, id, params| {
-            let answer = handler(&server.state(), &params);
-            answer_now(&id, answer.into_result())
-        });
+/// The sender of a request.
+#[derive(Debug, Clone)]
+struct Caller {
+    audience: Audience,
+    id: Id,
+}
+
+/// A request that reads; see [`read`].
+pub(crate) struct Read<R: request::Request, A> {
+    answer: fn(&View, &R::Params) -> A,
+    note: fn(&mut State, &R::Params),
+    is_long: fn(&View, &R::Params) -> bool,
+    announce: Option<Announce>,
+}
+
+/// A request that reads a place or little more: on the loop.
+pub(crate) fn read<R, A>(answer: fn(&View, &R::Params) -> A) -> Read<R, A>
+where
+    R: request::Request,
+{
+    Read { answer, note: |_, _| {}, is_long: |_, _| false, announce: None }
+}
+
+impl<R: request::Request, A> Read<R, A> {
+    /// Notes something in the state at once, before it reads.
+    pub(crate) fn noting(self, note: fn(&mut State, &R::Params)) -> Self {
+        Self { note, ..self }
     }
 
-    /// As [`Self::read`], where the state notes what the client asks about or has now.
-    pub(crate) fn read_and_note<R, A>(&mut self, handler: fn(&mut State, &R::Params) -> A, announce: Announce)
-    where
-        R: request::Request,
-        A: Answer<R::Result> + 'static,
-    {
-        self.request::<R>(announce, move |server, id, params| {
-            let answer = handler(&mut server.state(), &params);
-            answer_now(&id, answer.into_result())
-        });
+    /// Where it may read a lot, it reads beside the loop. A change to the workspace stops it, since an answer must not be
+    /// about a later text.
+    pub(crate) fn beside_if(self, is_long: fn(&View, &R::Params) -> bool) -> Self {
+        Self { is_long, ..self }
     }
 
-    /// A request that reads a whole file: on a snapshot, beside the loop where the file is long. `prepare` returns
-    /// `None` where there is no such file.
-    pub(crate) fn read_file<R, A>(
-        &mut self,
-        prepare: fn(&mut State, &R::Params) -> Option<Work<A>>,
-        announce: Announce,
-    ) where
-        R: request::Request,
-        A: WriteJson + 'static,
-    {
-        self.request::<R>(announce, move |server, id, params| {
-            let work = prepare(&mut server.state(), &params);
-            let work = match work {
-                None => return answer_now(&id, Ok(Value::Null)),
-                Some(Work::Done(answer)) => return answer_now(&id, Ok(answer)),
-                Some(Work::OnFile(work)) => work,
-            };
-            if work.snapshot.text().len_bytes() < SHORT {
-                return answer_now(&id, Ok((work.run)(work.snapshot)));
-            }
-            answer_later(server, &id, |token| {
-                let id = id.clone();
-                let room = server.outbox.room();
-                async move {
-                    // Room is asked for in turn, not when the request comes.
-                    yield_now().await;
-                    room.await;
-                    let FileWork { snapshot, outdated: is_outdated, run } = work;
-                    let snapshot = snapshot.cancelled_by(is_outdated.clone()).cancelled_by(token);
-                    let body = encode_answer(&id, &run(snapshot));
-                    if is_outdated.is_cancelled() {
-                        return Err(outdated());
-                    }
-                    Ok(body)
-                }
-            })
-        });
+    /// With capabilities.
+    pub(crate) fn announced(self, announce: Announce) -> Self {
+        Self { announce: Some(announce), ..self }
     }
+}
 
-    /// A request that may read a lot: where `is_long` says so, beside the loop. `note` is what happens at once in either
-    /// case. A change to the workspace stops it, since an answer must not be about a later text.
-    pub(crate) fn read_long<R, A>(
-        &mut self,
-        is_long: fn(&State, &R::Params) -> Option<String>,
-        note: fn(&mut State, &R::Params),
-        handler: fn(&mut State, &R::Params) -> A,
-        announce: Announce,
-    ) where
-        R: request::Request,
-        R::Params: Send,
-        A: Answer<R::Result> + 'static,
-    {
-        self.request::<R>(announce, move |server, id, params| {
+impl<R, A> From<Read<R, A>> for Row
+where
+    R: request::Request,
+    R::Params: Send,
+    A: Answer<R::Result> + 'static,
+{
+    fn from(Read { answer, note, is_long, announce }: Read<R, A>) -> Self {
+        let row = request::<R>(move |server, caller, params| {
             let mut state = server.state();
             note(&mut state, &params);
-            let Some(key) = is_long(&state, &params) else {
-                return answer_now(&id, handler(&mut state, &params).into_result());
-            };
-            let version = state.prepare_to_borrow();
+            if !is_long(&state.view, &params) {
+                return answer_now(&caller.id, answer(&state.view, &params).into_result());
+            }
+            let version = state.prepare_to_lend();
             drop(state);
-            answer_later(server, &id, |token| {
-                let (id, server) = (id.clone(), server.clone());
+            answer_later(server, caller, |token| {
+                let (server, caller) = (server.clone(), caller.clone());
                 async move {
-                    yield_now().await;
-                    server.outbox.room().await;
-                    let answer = server.read_beside(&key, version, token, |state| handler(state, &params));
-                    let answer = answer.ok_or_else(outdated)?.into_result()?;
-                    Ok(encode_answer(&id, &answer))
+                    caller.turn(&server).await;
+                    let answer = read_beside(&server, &caller, version, &token, |view| answer(view, &params));
+                    Ok(encode_answer(&caller.id, &answer?.into_result()?))
                 }
             })
         });
+        Self { announce, ..row }
     }
+}
 
-    /// A request that reads all files: one after the other, so that other messages are handled in between.
-    pub(crate) fn read_workspace<R, F>(&mut self, handler: fn(Reader, R::Params) -> F, announce: Announce)
-    where
-        R: request::Request,
-        F: Future<Output = Result<R::Result>> + Send + 'static,
-    {
-        self.run_request::<R, F>(announce, move |server, params| handler(Reader::new(server), params));
+/// Reads beside the loop. A client asks again when the text has changed; a page does not, and gets the answer about the
+/// latest text.
+fn read_beside<A>(
+    server: &Server,
+    caller: &Caller,
+    mut version: u64,
+    token: &CancellationToken,
+    read: impl Fn(&View) -> A,
+) -> Result<A> {
+    loop {
+        if let Some(answer) = server.read_beside(version, token.clone(), &read) {
+            return Ok(answer);
+        }
+        if caller.audience == Audience::Client {
+            return Err(outdated());
+        }
+        version = server.state().prepare_to_lend();
     }
+}
 
-    /// A request that does something, and may talk with the client about it.
-    pub(crate) fn run<R, F>(&mut self, handler: fn(Server, R::Params) -> F, announce: Announce)
-    where
-        R: request::Request,
-        F: Future<Output = Result<R::Result>> + Send + 'static,
-    {
-        self.run_request::<R, F>(announce, handler);
-    }
+/// A request that reads a whole file: on a snapshot of it, beside the loop where the file is long. `prepare` returns
+/// `None` where there is no such file.
+pub(crate) fn read_file<R, A>(prepare: fn(&View, &R::Params) -> Option<Work<A>>) -> Row
+where
+    R: request::Request,
+    A: WriteJson + 'static,
+{
+    request::<R>(move |server, caller, params| {
+        let work = prepare(&server.state().view, &params);
+        let work = match work {
+            None => return answer_now(&caller.id, Ok(Value::Null)),
+            Some(Work::Done(answer)) => return answer_now(&caller.id, Ok(answer)),
+            Some(Work::OnFile(work)) => work,
+        };
+        if work.snapshot.text().len_bytes() < SHORT {
+            return answer_now(&caller.id, Ok((work.run)(work.snapshot)));
+        }
+        answer_later(server, caller, |token| {
+            let (server, caller) = (server.clone(), caller.clone());
+            async move {
+                caller.turn(&server).await;
+                let FileWork { snapshot, outdated: is_outdated, run } = work;
+                let snapshot = snapshot.cancelled_by(is_outdated.clone()).cancelled_by(token);
+                let body = encode_answer(&caller.id, &run(snapshot));
+                if is_outdated.is_cancelled() {
+                    return Err(outdated());
+                }
+                Ok(body)
+            }
+        })
+    })
+}
 
-    /// A notification that changes the state.
-    pub(crate) fn change<N: Notification>(
-        &mut self,
-        handler: fn(&mut State, &N::Params, &Outbox),
-        announce: Announce,
-    ) {
-        self.notification::<N>(announce, move |server, params| {
-            handler(&mut server.state(), &params, &server.outbox);
+/// A request that does something, or takes several turns, and may talk with the client about it.
+pub(crate) fn run<R, F>(handler: fn(Server, R::Params) -> F) -> Row
+where
+    R: request::Request,
+    F: Future<Output = Result<R::Result>> + Send + 'static,
+{
+    request::<R>(move |server, caller, params| {
+        let answer = handler(server.clone(), params);
+        answer_later(server, caller, |_| {
+            let id = caller.id.clone();
+            async move { Ok(encode_answer(&id, &answer.await?)) }
+        })
+    })
+}
+
+/// A notification that changes the state.
+pub(crate) fn change<N: Notification>(handler: fn(&mut State, &N::Params, &Outbox)) -> Row {
+    notification::<N>(move |server, params| {
+        handler(&mut server.state(), &params, &server.outbox);
+        no_answer()
+    })
+}
+
+/// A notification that changes the state and leads to something else, such as a request to the client.
+pub(crate) fn follow<N, F>(handler: fn(Server, N::Params) -> F) -> Row
+where
+    N: Notification,
+    F: Future<Output = ()> + Send + 'static,
+{
+    notification::<N>(move |server, params| {
+        Either::Right(handler(server.clone(), params).map(|()| Ok(None)).boxed())
+    })
+}
+
+/// A notification that stops something; it needs no state, and may come after `shutdown` too.
+pub(crate) fn interrupt<N: Notification>(handler: fn(&Server, &N::Params)) -> Row {
+    let row = notification::<N>(move |server, params| {
+        handler(server, &params);
+        no_answer()
+    });
+    Row { stages: &[Stage::Serving, Stage::ShutDown], ..row }
+}
+
+/// A request that the framework answers.
+pub(crate) fn framework_request<R: request::Request>(stages: &'static [Stage]) -> Row {
+    Row { method: R::METHOD, stages, announce: None, handler: Handler::FrameworkRequest }
+}
+
+/// A notification for the framework.
+pub(crate) fn framework_notification<N: Notification>(stages: &'static [Stage]) -> Row {
+    Row { method: N::METHOD, stages, announce: None, handler: Handler::FrameworkNotification }
+}
+
+fn request<R: request::Request>(
+    handler: impl Fn(&Server, &Caller, R::Params) -> Reply + Send + Sync + 'static,
+) -> Row {
+    let handler = move |server: &Server, caller: &Caller, params| match read_params(params) {
+        Ok(params) => handler(server, caller, params),
+        Err(error) => answer_now(&caller.id, Err::<Value, _>(error)),
+    };
+    let handler = Handler::Request(Box::new(handler));
+    Row { method: R::METHOD, stages: &[Stage::Serving], announce: None, handler }
+}
+
+fn notification<N: Notification>(
+    handler: impl Fn(&Server, N::Params) -> Reply + Send + Sync + 'static,
+) -> Row {
+    let handler = move |server: &Server, params| match read_params(params) {
+        Ok(params) => handler(server, params),
+        Err(error) => {
+            log(format_args!("`{}` is ignored: {}", N::METHOD, error.message));
             no_answer()
-        });
+        }
+    };
+    let handler = Handler::Notification(Box::new(handler));
+    Row { method: N::METHOD, stages: &[Stage::Serving], announce: None, handler }
+}
+
+impl Row {
+    /// With capabilities.
+    pub(crate) fn announced(self, announce: Announce) -> Self {
+        Self { announce: Some(announce), ..self }
     }
 
-    /// A notification that changes the state and leads to something else, such as a request to the client.
-    pub(crate) fn follow<N, F>(&mut self, handler: fn(Server, N::Params) -> F, announce: Announce)
-    where
-        N: Notification,
-        F: Future<Output = ()> + Send + 'static,
-    {
-        self.notification::<N>(announce, move |server, params| {
-            Either::Right(handler(server.clone(), params).map(|()| Ok(None)).boxed())
-        });
+    /// True for a request, which has an id and is answered.
+    fn is_request(&self) -> bool {
+        matches!(self.handler, Handler::FrameworkRequest | Handler::Request(_))
     }
+}
 
-    /// A notification that stops something; it needs no state, and may come after `shutdown` too.
-    pub(crate) fn interrupt<N: Notification>(&mut self, handler: fn(&Server, &N::Params)) {
-        self.notification::<N>(
-            |_, _| {},
-            move |server, params| {
-                handler(server, &params);
-                no_answer()
-            },
-        );
-        if let Some(row) = self.rows.get_mut(N::METHOD) {
-            row.stages = &[Stage::Serving, Stage::ShutDown];
+impl Caller {
+    /// Resolves when other messages have had their turn, and the client has room for another answer.
+    async fn turn(&self, server: &Server) {
+        yield_now().await;
+        if self.audience == Audience::Client {
+            server.outbox.room().await;
         }
     }
+}
 
-    /// A request that the framework answers.
-    pub(crate) fn framework_request<R: request::Request>(&mut self, stages: &'static [Stage]) {
-        self.insert(R::METHOD, Row { is_request: true, stages, handler: Handler::Framework });
-    }
-
-    /// A notification for the framework.
-    pub(crate) fn framework_notification<N: Notification>(&mut self, stages: &'static [Stage]) {
-        self.insert(N::METHOD, Row { is_request: false, stages, handler: Handler::Framework });
-    }
-
-    fn run_request<R, F>(
-        &mut self,
-        announce: Announce,
-        handler: impl Fn(Server, R::Params) -> F + Send + Sync + 'static,
-    ) where
-        R: request::Request,
-        F: Future<Output = Result<R::Result>> + Send + 'static,
-    {
-        self.request::<R>(announce, move |server, id, params| {
-            let answer = handler(server.clone(), params);
-            answer_later(server, &id, |_| {
-                let id = id.clone();
-                async move { Ok(encode_answer(&id, &answer.await?)) }
-            })
-        });
-    }
-
-    fn request<R: request::Request>(
-        &mut self,
-        announce: Announce,
-        handler: impl Fn(&Server, Id, R::Params) -> Reply + Send + Sync + 'static,
-    ) {
-        self.announcements.push(announce);
-        let handler = move |server: &Server, id: Id, params| match read_params(params) {
-            Ok(params) => handler(server, id, params),
-            Err(error) => answer_now(&id, Err::<Value, _>(error)),
-        };
-        let handler = Handler::Request(Box::new(handler));
-        self.insert(R::METHOD, Row { is_request: true, stages: &[Stage::Serving], handler });
-    }
-
-    fn notification<N: Notification>(
-        &mut self,
-        announce: Announce,
-        handler: impl Fn(&Server, N::Params) -> Reply + Send + Sync + 'static,
-    ) {
-        self.announcements.push(announce);
-        let handler = move |server: &Server, params| match read_params(params) {
-            Ok(params) => handler(server, params),
-            Err(error) => {
-                log(format_args!("`{}` is ignored: {}", N::METHOD, error.message));
-                no_answer()
-            }
-        };
-        let handler = Handler::Notification(Box::new(handler));
-        self.insert(N::METHOD, Row { is_request: false, stages: &[Stage::Serving], handler });
-    }
-
-    fn insert(&mut self, method: &'static str, row: Row) {
+impl Table {
+    /// Adds a method.
+    pub(crate) fn add(&mut self, row: impl Into<Row>) {
+        let row = row.into();
+        let method = row.method;
         let before = self.rows.insert(method, row);
         debug_assert!(before.is_none(), "`{method}` has two rows");
     }
@@ -300,10 +318,20 @@ impl Table {
     /// Returns the capabilities of the server for this client.
     pub(crate) fn capabilities(&self, client: &ClientFeatures) -> ServerCapabilities {
         let mut capabilities = ServerCapabilities::default();
-        for announce in &self.announcements {
+        for announce in self.rows.values().filter_map(|row| row.announce) {
             announce(&mut capabilities, client);
         }
         capabilities
+    }
+
+    /// Answers a request of a page.
+    #[cfg(feature = "process")]
+    pub(crate) async fn answer_page(&self, server: &Server, request: Request) -> Option<Body> {
+        let reply = match self.row(&request, server.stage()) {
+            Ok(row) => row.handle(server, Audience::Page, request),
+            Err(error) => refuse(&request, error),
+        };
+        reply.await.ok().flatten()
     }
 
     /// The row of a message, or why it cannot be taken.
@@ -322,13 +350,27 @@ impl Table {
         }
         match (row, request.id()) {
             (None, _) => Err(Error::method_not_found()),
-            (Some(row), None) if row.is_request => {
+            (Some(row), None) if row.is_request() => {
                 Err(error(ErrorCode::InvalidRequest, "it is a request and needs an id"))
             }
             (Some(Row { handler: Handler::Notification(_), .. }), Some(_)) => {
                 Err(error(ErrorCode::InvalidRequest, "it is a notification and has no id"))
             }
             (Some(row), _) => Ok(row),
+        }
+    }
+}
+
+impl Row {
+    /// Handles a message that is not the framework's.
+    fn handle(&self, server: &Server, audience: Audience, request: Request) -> Reply {
+        let (_, id, params) = request.into_parts();
+        match (&self.handler, id) {
+            (Handler::Request(handler), Some(id)) => handler(server, &Caller { audience, id }, params),
+            (Handler::Notification(handler), _) => handler(server, params),
+            (Handler::Request(_) | Handler::FrameworkRequest | Handler::FrameworkNotification, _) => {
+                no_answer()
+            }
         }
     }
 }
@@ -377,15 +419,22 @@ fn answer_now(id: &Id, answer: Result<impl WriteJson>) -> Reply {
 }
 
 /// Answers with the result of `start`, unless the client cancels the request before.
-fn answer_later<F>(server: &Server, id: &Id, start: impl FnOnce(CancellationToken) -> F) -> Reply
+fn answer_later<F>(server: &Server, caller: &Caller, start: impl FnOnce(CancellationToken) -> F) -> Reply
 where
     F: Future<Output = Result<Body>> + Send + 'static,
 {
-    let request = match server.pending.register(id) {
+    let id = caller.id.clone();
+    if caller.audience != Audience::Client {
+        // Pages cancel nothing, and have ids of their own.
+        let answer = start(CancellationToken::default());
+        return Either::Right(
+            async move { Ok(Some(answer.await.unwrap_or_else(|error| encode_error(id, error)))) }.boxed(),
+        );
+    }
+    let request = match server.pending.register(&id) {
         Ok(request) => request,
-        Err(error) => return answer_now(id, Err::<Value, _>(error)),
+        Err(error) => return answer_now(&id, Err::<Value, _>(error)),
     };
-    let id = id.clone();
     let answer = start(request.token.clone());
     let reply =
         async move { Ok(Some(request.run(answer).await.unwrap_or_else(|error| encode_error(id, error)))) };
@@ -433,16 +482,14 @@ where
             Ok(row) => row,
             Err(error) => return refuse(&request, error),
         };
-        match &row.handler {
-            Handler::Framework => {
+        match row.handler {
+            Handler::FrameworkRequest | Handler::FrameworkNotification => {
                 let answer = self.inner.call(request);
                 Either::Right(async move { Ok(answer.await?.map(|answer| encode(&answer))) }.boxed())
             }
-            Handler::Request(handler) => match request.into_parts() {
-                (_, Some(id), params) => handler(&self.server, id, params),
-                (_, None, _) => no_answer(),
-            },
-            Handler::Notification(handler) => handler(&self.server, request.into_parts().2),
+            Handler::Request(_) | Handler::Notification(_) => {
+                row.handle(&self.server, Audience::Client, request)
+            }
         }
     }
 }

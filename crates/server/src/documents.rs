@@ -1,7 +1,7 @@
 //! Documents as the client knows them: their addresses, and the client's state of each.
 
 use std::str::FromStr;
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
 use pydslrep_analysis::{CancellationToken, FileId, Snapshot};
@@ -10,7 +10,7 @@ use pydslrep_ide::{KnownMovements, ShownLenses};
 use pydslrep_text::Span;
 use pydslrep_workspace::{DocumentKind, TextChange, path_of};
 use ropey::Rope;
-use tower_lsp::ls_types::{Diagnostic, InitializeParams, TextDocumentContentChangeEvent, Uri};
+use tower_lsp::ls_types::{InitializeParams, TextDocumentContentChangeEvent, Uri};
 
 use crate::positions::{self, Encoding};
 
@@ -50,12 +50,12 @@ impl<'a> Document<'a> {
     /// Its address, as the client writes it: the client has to recognise it. A file that is not open has that of its
     /// path.
     pub(crate) fn uri(self) -> Option<Uri> {
-        address(self.key, self.client)
+        self.client.map(|client| client.uri.clone()).or_else(|| uri_of(self.key))
     }
 
     /// The client's number for this text; `None` if the document is not open there.
     pub(crate) fn version(self) -> Option<i32> {
-        self.client?.version
+        self.client.map(|client| client.version)
     }
 
     /// Which opening this is, counted over the session: an editor that opens a document again remembers nothing of it.
@@ -63,9 +63,9 @@ impl<'a> Document<'a> {
         self.client.map_or(0, |client| client.opening)
     }
 
-    /// The diagnostics that were last published, if any were.
-    pub(crate) fn published(self) -> Option<&'a [Diagnostic]> {
-        self.client?.published.as_deref()
+    /// What requests about it remember for later ones; nothing if it is not open.
+    pub(crate) fn memory(self) -> Arc<Memory> {
+        self.client.map(|client| Arc::clone(&client.memory)).unwrap_or_default()
     }
 
     /// Cancelled when the text changes.
@@ -74,38 +74,47 @@ impl<'a> Document<'a> {
     }
 }
 
-/// The client's state of a document.
-#[derive(Debug, Default)]
+/// A document that is open in the client.
+#[derive(Debug, Clone)]
 pub(crate) struct ClientDocument {
-    /// Its address as the client writes it, if it was opened there.
-    pub(crate) uri: Option<Uri>,
-    /// The client's number for the text; `None` if it is not open there.
-    pub(crate) version: Option<i32>,
+    /// Its address as the client writes it.
+    pub(crate) uri: Uri,
+    /// The client's number for the text.
+    pub(crate) version: i32,
     /// See [`Document::opening`].
-    pub(crate) opening: u64,
-    /// The diagnostics last published, if any.
-    pub(crate) published: Option<Vec<Diagnostic>>,
+    opening: u64,
     /// Cancelled when the text changes.
-    pub(crate) outdated: CancellationToken,
+    outdated: CancellationToken,
+    /// What later requests need of earlier ones.
+    memory: Arc<Memory>,
+}
+
+/// What requests about a document remember for later ones; those that read on another thread share it.
+#[derive(Debug, Default)]
+pub(crate) struct Memory {
     /// The last known state of its movements.
-    pub(crate) movements: KnownMovements,
+    pub(crate) movements: Shared<KnownMovements>,
     /// The lenses the client last got.
-    pub(crate) lenses: ShownLenses,
+    pub(crate) lenses: Shared<ShownLenses>,
     /// The semantic tokens the client has, if it takes changes of them.
-    pub(crate) tokens: Option<SentTokens>,
+    pub(crate) tokens: Shared<SentTokens>,
+}
+
+/// A value that one request at a time reads and changes.
+#[derive(Debug, Default)]
+pub(crate) struct Shared<T>(Mutex<T>);
+
+impl<T> Shared<T> {
+    /// The value; a request that was cancelled may have left it as any request would.
+    pub(crate) fn lock(&self) -> MutexGuard<'_, T> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
 }
 
 impl ClientDocument {
-    /// Returns a copy without the memory for later requests.
-    pub(crate) fn without_memory(&self) -> Self {
-        let Self { uri, version, opening, .. } = self;
-        Self { uri: uri.clone(), version: *version, opening: *opening, ..Self::default() }
-    }
-
-    /// Exchanges the memory for later requests.
-    pub(crate) fn exchange_memory(&mut self, other: &mut Self) {
-        std::mem::swap(&mut self.movements, &mut other.movements);
-        std::mem::swap(&mut self.lenses, &mut other.lenses);
+    /// A document that was opened, as the `opening`th of the session.
+    pub(crate) fn new(uri: Uri, version: i32, opening: u64) -> Self {
+        Self { uri, version, opening, outdated: CancellationToken::default(), memory: Arc::default() }
     }
 
     /// Stops work on the text as it was.
@@ -114,9 +123,18 @@ impl ClientDocument {
     }
 }
 
-/// The semantic tokens of a document that the client has.
-#[derive(Debug)]
+/// The semantic tokens of a document that were sent to the client.
+#[derive(Debug, Default)]
 pub(crate) struct SentTokens {
+    /// The number of answers.
+    pub(crate) answers: u32,
+    /// Those of the last answer.
+    pub(crate) last: Option<KnownTokens>,
+}
+
+/// The semantic tokens of a document that the client has.
+#[derive(Debug, Clone)]
+pub(crate) struct KnownTokens {
     /// The id they were sent under.
     pub(crate) id: String,
     /// The text they are of.
@@ -127,11 +145,6 @@ pub(crate) struct SentTokens {
 
 /// The number of semantic tokens of each entity of a text; empty until the work is done.
 pub(crate) type TokenCounts = Arc<OnceLock<Vec<usize>>>;
-
-/// The address of a document, as the client writes it or, if it was never opened there, that of its path.
-pub(crate) fn address(key: &str, client: Option<&ClientDocument>) -> Option<Uri> {
-    client.and_then(|client| client.uri.clone()).or_else(|| uri_of(key))
-}
 
 /// Applies the changes of one message one after the other; returns each with the text after it.
 pub(crate) fn text_changes(

@@ -9,7 +9,7 @@ use tower_lsp::ls_types::{
 };
 
 use crate::documents::Document;
-use crate::state::State;
+use crate::view::View;
 
 /// Edits of documents, each document once, and what happens to files.
 #[derive(Default)]
@@ -21,19 +21,19 @@ pub(crate) struct Edits<'a> {
 
 impl<'a> Edits<'a> {
     /// Edits of programs.
-    pub(crate) fn of_programs(state: &'a State, edits: &[Edit]) -> Self {
+    pub(crate) fn of_programs(view: &'a View, edits: &[Edit]) -> Self {
         let mut all = Self::default();
         for edit in edits {
-            if let Some(document) = state.document_of(edit.file) {
-                all.add(state, document, edit.span, edit.text.clone());
+            if let Some(document) = view.document_of(edit.file) {
+                all.add(view, document, edit.span, edit.text.clone());
             }
         }
         all
     }
 
     /// Replaces a part of a document, unless the same is done already.
-    pub(crate) fn add(&mut self, state: &State, document: Document<'a>, span: Span, text: String) {
-        let edit = TextEdit::new(state.range(document, span), text);
+    pub(crate) fn add(&mut self, view: &View, document: Document<'a>, span: Span, text: String) {
+        let edit = TextEdit::new(view.range(document, span), text);
         match self.documents.iter_mut().find(|(other, _)| other.key == document.key) {
             Some((_, edits)) if edits.contains(&edit) => {}
             Some((_, edits)) => edits.push(edit),
@@ -42,8 +42,8 @@ impl<'a> Edits<'a> {
     }
 
     /// All of it for the client.
-    pub(crate) fn finish(self, state: &State) -> WorkspaceEdit {
-        if !state.client.versioned_edits {
+    pub(crate) fn finish(self, view: &View) -> WorkspaceEdit {
+        if !view.client.versioned_edits {
             let changes = self.documents.into_iter();
             let changes = changes.filter_map(|(document, edits)| Some((document.uri()?, edits))).collect();
             return WorkspaceEdit { changes: Some(changes), ..WorkspaceEdit::default() };

@@ -47,12 +47,13 @@ mod positions;
 #[cfg(feature = "process")]
 mod process;
 mod reader;
+mod readers;
 mod runtimes;
 mod server;
 mod session;
-mod shared;
 mod state;
 mod typing;
+mod view;
 #[cfg(feature = "process")]
 mod web;
 mod work;

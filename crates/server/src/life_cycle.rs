@@ -28,8 +28,8 @@ impl LanguageServer for LifeCycle {
         features.show_document |= params.client_info.as_ref().is_some_and(|client| client.name == "helix");
         let capabilities = self.table.capabilities(&features);
         let mut state = server.state();
-        state.client = features;
-        state.workspace.set_folders(folders_of(&params));
+        state.view.client = Arc::new(features);
+        state.workspace_mut().set_folders(folders_of(&params));
         state.trace = params.trace.unwrap_or_default();
         if let Some(settings) = &params.initialization_options {
             settings::set(&mut state, settings, &server.outbox);

@@ -6,9 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 
 use futures::channel::oneshot;
-use pydslrep_analysis::{CancellationToken, cancellable};
-#[cfg(feature = "process")]
-use tower_lsp::ls_types::Uri;
+use pydslrep_analysis::CancellationToken;
 use tower_lsp::ls_types::{
     ProgressToken, WorkDoneProgressCancelParams, WorkDoneProgressCreateParams, request,
 };
@@ -21,6 +19,7 @@ use crate::log::log;
 use crate::message::Outbox;
 use crate::pending::PendingRequests;
 use crate::state::State;
+use crate::view::View;
 #[cfg(feature = "process")]
 use crate::web::WebServer;
 
@@ -88,39 +87,16 @@ impl Server {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Reads the state of `version` beside the message loop; `None` if it has changed since or does so meanwhile, or if
-    /// `token` is cancelled.
+    /// Reads the view of a version of the workspace beside the message loop; `None` if that has changed since or does so
+    /// meanwhile, or if `token` is cancelled.
     pub(crate) fn read_beside<A>(
         &self,
-        key: &str,
         version: u64,
         token: CancellationToken,
-        read: impl FnOnce(&mut State) -> A,
+        read: impl FnOnce(&View) -> A,
     ) -> Option<A> {
-        let mut state = self.state();
-        if state.workspace.version() != version {
-            return None;
-        }
-        let (mut borrowed, outdated) = state.borrow(key);
-        drop(state);
-        let answer = cancellable(&[outdated, token], || read(&mut borrowed)).ok();
-        borrowed.workspace.release();
-        self.state().release(key, borrowed);
-        answer
-    }
-
-    /// Reads the state for a page, not the client: again whenever it changes meanwhile.
-    #[cfg(feature = "process")]
-    pub(crate) fn read_latest<A>(&self, uri: &Uri, read: impl Fn(&mut State) -> A) -> A {
-        loop {
-            let mut state = self.state();
-            let Some(key) = state.if_long(uri) else { return read(&mut state) };
-            let version = state.prepare_to_borrow();
-            drop(state);
-            if let Some(answer) = self.read_beside(&key, version, CancellationToken::default(), &read) {
-                return answer;
-            }
-        }
+        let loan = self.state().lend(version)?;
+        loan.read(token, read)
     }
 
     /// The server of the path preview's pages, if it was started.
@@ -140,7 +116,7 @@ impl Server {
 impl Server {
     /// Reads the client's settings, where the client can be asked.
     pub(crate) async fn ask_for_settings(&self) {
-        if !self.state().client.settings {
+        if !self.state().view.client.settings {
             return;
         }
         match self.client.configuration(settings::wanted()).await {
@@ -158,7 +134,7 @@ impl Server {
         if folders.is_empty() {
             return;
         }
-        if self.state().provided.is_some() {
+        if self.state().view.provided.is_some() {
             // It is in memory, and there may be no threads.
             indexing::index(self, &folders);
             return self.refresh().await;
@@ -188,7 +164,7 @@ impl Server {
     }
 
     async fn begin(&self, title: &str) -> Option<OngoingProgress<Unbounded, NotCancellable>> {
-        if !self.state().client.progress {
+        if !self.state().view.client.progress {
             return None;
         }
         let number = {
@@ -208,10 +184,10 @@ impl Server {
 
     /// Asks clients that pull diagnostics and hints to pull them again: other documents than theirs have changed.
     pub(crate) async fn refresh(&self) {
-        if self.state().client.refreshes_diagnostics {
+        if self.state().view.client.refreshes_diagnostics {
             let _ = self.client.workspace_diagnostic_refresh().await;
         }
-        if self.state().client.refreshes_inlay_hints {
+        if self.state().view.client.refreshes_inlay_hints {
             let _ = self.client.inlay_hint_refresh().await;
         }
     }
@@ -223,7 +199,7 @@ impl Server {
     pub(crate) fn flush_diagnostics(&self) {
         let mut state = self.state();
         if diagnostics::publish(&mut state, &self.outbox) {
-            planned_path::announce(&mut state, &self.outbox);
+            planned_path::announce(&state, &self.outbox);
         }
         state.tell_outdated(&self.outbox);
     }
@@ -240,6 +216,6 @@ impl Server {
 
     /// Rebuilds the analysis from the documents: a handler that panicked may have left it half changed.
     pub(crate) fn recover(&self) {
-        self.state().workspace.rebuild();
+        self.state().workspace_mut().rebuild();
     }
 }

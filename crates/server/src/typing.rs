@@ -22,8 +22,8 @@ pub(crate) struct Typing {
     places: Vec<u32>,
     /// True if the document has been saved since.
     is_saved: bool,
-    /// True if completion has been requested since.
-    is_completed: bool,
+    /// The number of requests for completion there since.
+    completions: u32,
 }
 
 /// A change of a text.
@@ -113,7 +113,7 @@ impl Typing {
                 places.push(span.start + cursor);
             }
         }
-        Some(Self { key: key.to_owned(), places, is_saved: false, is_completed: false })
+        Some(Self { key: key.to_owned(), places, is_saved: false, completions: 0 })
     }
 
     /// The lines being typed in, without their endings.
@@ -133,9 +133,20 @@ impl Typing {
         if self.is_saved { &[] } else { &self.places }
     }
 
-    /// Notes that completion is requested at an offset; returns whether that is the first time since a change there.
-    pub(crate) fn complete(&mut self, key: &str, offset: u32) -> bool {
-        self.key == key && self.places.contains(&offset) && !std::mem::replace(&mut self.is_completed, true)
+    /// Notes that completion is requested at an offset.
+    pub(crate) fn note_completion(&mut self, key: &str, offset: u32) {
+        if self.is_at(key, offset) {
+            self.completions += 1;
+        }
+    }
+
+    /// Returns whether the last request for completion at an offset was the first one since a change there.
+    pub(crate) fn is_first_completion(&self, key: &str, offset: u32) -> bool {
+        self.is_at(key, offset) && self.completions == 1
+    }
+
+    fn is_at(&self, key: &str, offset: u32) -> bool {
+        self.key == key && self.places.contains(&offset)
     }
 
     /// Notes that a document was saved; returns whether that changes anything.

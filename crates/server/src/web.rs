@@ -12,8 +12,8 @@ use std::sync::Arc;
 use std::thread;
 use std::time::Duration;
 
-use futures::StreamExt;
-use futures::stream;
+use futures::future::BoxFuture;
+use futures::{StreamExt, stream};
 use http_body_util::combinators::UnsyncBoxBody;
 use http_body_util::{BodyExt, Full, Limited, StreamBody};
 use hyper::body::{Bytes, Frame, Incoming};
@@ -77,7 +77,7 @@ pub(crate) struct File {
 }
 
 /// Answers a message of a page.
-type Answer = Box<dyn Fn(&[u8]) -> Vec<u8> + Send + Sync>;
+type Answer = Box<dyn Fn(Bytes) -> BoxFuture<'static, Vec<u8>> + Send + Sync>;
 
 /// The files, events and answers that pages get.
 pub(crate) struct Site {
@@ -237,7 +237,7 @@ impl Door {
                 let message = Limited::new(request.into_body(), MAX_BYTES).collect();
                 match timeout(REQUEST_TIMEOUT, message).await {
                     Ok(Ok(message)) => {
-                        response("application/json", full((self.site.answer)(&message.to_bytes())))
+                        response("application/json", full((self.site.answer)(message.to_bytes()).await))
                     }
                     _ => nothing(),
                 }

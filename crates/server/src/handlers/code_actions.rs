@@ -27,6 +27,7 @@ use crate::edits::{self, Edits};
 use crate::handlers::diagnostics;
 use crate::handlers::scripts::{self, Script};
 use crate::state::State;
+use crate::view::View;
 
 /// The kind of actions that create a scene or add to one.
 pub(crate) const SCENE_KIND: CodeActionKind = CodeActionKind::new("scene");
@@ -73,40 +74,39 @@ pub(crate) fn note_cursor(state: &mut State, params: &CodeActionParams) {
 }
 
 /// `textDocument/codeAction`.
-pub(crate) fn code_actions(state: &mut State, params: &CodeActionParams) -> Option<CodeActionResponse> {
-    let state = &*state;
+pub(crate) fn code_actions(view: &View, params: &CodeActionParams) -> Option<CodeActionResponse> {
     let wanted = |kind: &CodeActionKind| {
         params.context.only.as_ref().is_none_or(|only| only.iter().any(|wish| covers(wish, kind)))
     };
-    if let Some((document, file, text)) = state.toml_text(&params.text_document.uri) {
-        let is_wanted = wanted(&CodeActionKind::QUICKFIX) && state.client.action_literals;
-        let fixes = || ide::toml_fixes(file, &text, state.span(document, params.range));
-        return Some(if is_wanted { key_fixes(state, document, fixes(), params) } else { Vec::new() });
+    if let Some((document, file, text)) = view.toml_text(&params.text_document.uri) {
+        let is_wanted = wanted(&CodeActionKind::QUICKFIX) && view.client.action_literals;
+        let fixes = || ide::toml_fixes(file, &text, view.span(document, params.range));
+        return Some(if is_wanted { key_fixes(view, document, fixes(), params) } else { Vec::new() });
     }
-    let (document, file) = state.analysed(&params.text_document.uri)?;
+    let (document, file) = view.analysed(&params.text_document.uri)?;
     let mut actions = Vec::new();
-    if wanted(&CodeActionKind::QUICKFIX) && state.client.action_literals {
-        actions.extend(quick_fixes(state, document, file, params));
-        actions.extend(rewriting::fix_all_of_a_code(state, document, file, params));
+    if wanted(&CodeActionKind::QUICKFIX) && view.client.action_literals {
+        actions.extend(quick_fixes(view, document, file, params));
+        actions.extend(rewriting::fix_all_of_a_code(view, document, file, params));
     }
-    if state.client.action_literals {
-        actions.extend(rewriting::refactorings(state, document, file, params, wanted));
+    if view.client.action_literals {
+        actions.extend(rewriting::refactorings(view, document, file, params, wanted));
     }
-    if wanted(&CodeActionKind::SOURCE_FIX_ALL) && state.client.action_literals {
-        actions.extend(rewriting::fix_all(state, document, file));
+    if wanted(&CodeActionKind::SOURCE_FIX_ALL) && view.client.action_literals {
+        actions.extend(rewriting::fix_all(view, document, file));
     }
     if wanted(&GENERATE_SCRIPT_KIND) {
-        actions.extend(script_actions(state, document, file, params));
+        actions.extend(script_actions(view, document, file, params));
     }
-    if wanted(&SCENE_KIND) && state.client.action_literals {
-        actions.extend(scene_actions(state, document, file, params));
+    if wanted(&SCENE_KIND) && view.client.action_literals {
+        actions.extend(scene_actions(view, document, file, params));
     }
     Some(actions)
 }
 
 /// The edit of the quick fix with a title at a location.
 #[cfg(feature = "process")]
-pub(crate) fn quick_fix(state: &mut State, location: &Location, title: &str) -> Option<WorkspaceEdit> {
+pub(crate) fn quick_fix(view: &View, location: &Location, title: &str) -> Option<WorkspaceEdit> {
     let params = CodeActionParams {
         text_document: TextDocumentIdentifier { uri: location.uri.clone() },
         range: location.range,
@@ -121,7 +121,7 @@ pub(crate) fn quick_fix(state: &mut State, location: &Location, title: &str) -> 
         CodeActionOrCommand::CodeAction(action) if action.title == title => action.edit,
         _ => None,
     };
-    code_actions(state, &params)?.into_iter().find_map(is_it)
+    code_actions(view, &params)?.into_iter().find_map(is_it)
 }
 
 /// A title with a capital, as in editors: the crates below write them for the middle of a sentence, as in a terminal.
@@ -138,19 +138,19 @@ fn covers(wish: &CodeActionKind, kind: &CodeActionKind) -> bool {
 
 /// The fixes of every diagnostic that touches the range.
 fn quick_fixes(
-    state: &State,
+    view: &View,
     document: Document<'_>,
     file: FileId,
     params: &CodeActionParams,
 ) -> Vec<CodeActionOrCommand> {
-    let range = state.span(document, params.range);
-    let fixes = ide::quick_fixes(state.database(), file, range).into_iter().filter_map(|found| {
-        let shown = diagnostics::convert(state, document, &found.diagnostic)?;
+    let range = view.span(document, params.range);
+    let fixes = ide::quick_fixes(view.database(), file, range).into_iter().filter_map(|found| {
+        let shown = diagnostics::convert(view, document, &found.diagnostic)?;
         Some(CodeActionOrCommand::CodeAction(CodeAction {
             title: sentence(&found.fix.title),
             kind: Some(CodeActionKind::QUICKFIX),
             diagnostics: Some(vec![as_the_client_has_it(&params.context.diagnostics, shown)]),
-            edit: Some(workspace_edit(state, &found.fix.edits)),
+            edit: Some(workspace_edit(view, &found.fix.edits)),
             is_preferred: found.is_preferred.then_some(true),
             ..CodeAction::default()
         }))
@@ -160,22 +160,22 @@ fn quick_fixes(
 
 /// The fixes of the problems of a settings file or a scene in the range.
 fn key_fixes(
-    state: &State,
+    view: &View,
     document: Document<'_>,
     found: Vec<ide::KeyFix>,
     params: &CodeActionParams,
 ) -> Vec<CodeActionOrCommand> {
     let action = |fix: ide::KeyFix| {
-        let mut edits = Edits::of_programs(state, &fix.program);
+        let mut edits = Edits::of_programs(view, &fix.program);
         for (span, text) in fix.edits {
-            edits.add(state, document, span, text);
+            edits.add(view, document, span, text);
         }
-        let shown = diagnostics::convert_problem(state, document, fix.problem);
+        let shown = diagnostics::convert_problem(view, document, fix.problem);
         CodeAction {
             title: sentence(&fix.title),
             kind: Some(CodeActionKind::QUICKFIX),
             diagnostics: Some(vec![as_the_client_has_it(&params.context.diagnostics, shown)]),
-            edit: Some(edits.finish(state)),
+            edit: Some(edits.finish(view)),
             ..CodeAction::default()
         }
     };
@@ -184,28 +184,28 @@ fn key_fixes(
 
 /// Creates the scenes of the declaration at the cursor, or adds what they lack.
 fn scene_actions(
-    state: &State,
+    view: &View,
     document: Document<'_>,
     file: FileId,
     params: &CodeActionParams,
 ) -> Vec<CodeActionOrCommand> {
-    let offset = state.offset(document, params.range.end);
-    let offers = ide::scene_actions(state.database(), ide::FilePosition { file, offset });
-    offers.into_iter().filter_map(|offer| scene_action(state, offer)).map(Into::into).collect()
+    let offset = view.offset(document, params.range.end);
+    let offers = ide::scene_actions(view.database(), ide::FilePosition { file, offset });
+    offers.into_iter().filter_map(|offer| scene_action(view, offer)).map(Into::into).collect()
 }
 
 /// `None` where there is no place for the scene, or this client cannot create it.
-fn scene_action(state: &State, offer: ide::SceneAction) -> Option<CodeAction> {
+fn scene_action(view: &View, offer: ide::SceneAction) -> Option<CodeAction> {
     let ide::SceneAction { program, environment, added, span, text } = offer;
     let file_name = format!("{environment}{ENDING}");
     let (title, edit) = if let Some(span) = span {
         let mut edits = Edits::default();
-        edits.add(state, state.scene_document(program, &environment)?, span, text);
-        (format!("Add {} to {file_name}", added.join(", ")), edits.finish(state))
+        edits.add(view, view.scene_document(program, &environment)?, span, text);
+        (format!("Add {} to {file_name}", added.join(", ")), edits.finish(view))
     } else {
-        let key = state.workspace.scene_key(program, &environment)?;
+        let key = view.workspace.scene_key(program, &environment)?;
         // A file that cannot be read is not replaced.
-        if !state.client.create_files || state.workspace.is_file(&key) {
+        if !view.client.create_files || view.workspace.is_file(&key) {
             return None;
         }
         (format!("Create scene {file_name}"), edits::new_file(uri_of(&key)?, text))
@@ -220,33 +220,33 @@ fn as_the_client_has_it(theirs: &[Diagnostic], ours: Diagnostic) -> Diagnostic {
 }
 
 /// Edits of programs, in the best form that this client supports.
-pub(crate) fn workspace_edit(state: &State, edits: &[analysis::Edit]) -> WorkspaceEdit {
-    Edits::of_programs(state, edits).finish(state)
+pub(crate) fn workspace_edit(view: &View, edits: &[analysis::Edit]) -> WorkspaceEdit {
+    Edits::of_programs(view, edits).finish(view)
 }
 
 /// **Generate script** for every environment of the document.
 fn script_actions(
-    state: &State,
+    view: &View,
     document: Document<'_>,
     file: FileId,
     params: &CodeActionParams,
 ) -> Vec<CodeActionOrCommand> {
     let Some(uri) = document.uri() else { return Vec::new() };
-    let environments = state.database().environments(file);
-    let scripts = scripts::of_environments(state, &uri, environments.iter().map(|(id, _)| *id));
-    let cursor = state.database().entity_at(file, state.offset(document, params.range.end));
+    let environments = view.database().environments(file);
+    let scripts = scripts::of_environments(view, &uri, environments.iter().map(|(id, _)| *id));
+    let cursor = view.database().entity_at(file, view.offset(document, params.range.end));
     let named = environments.iter().zip(scripts);
     let actions = named.filter_map(|((id, name), script)| {
         let is_here = cursor.is_some_and(|cursor| cursor.id == *id);
         let kind =
             if is_here && params.context.only.is_none() { SCRIPT_HERE_KIND } else { GENERATE_SCRIPT_KIND };
-        script_action(state, &uri, &name.text, script, kind)
+        script_action(view, &uri, &name.text, script, kind)
     });
     actions.collect()
 }
 
 fn script_action(
-    state: &State,
+    view: &View,
     uri: &Uri,
     name: &str,
     script: Result<Script>,
@@ -254,12 +254,12 @@ fn script_action(
 ) -> Option<CodeActionOrCommand> {
     let script = match script {
         Ok(script) => script,
-        Err(error) => return disabled(state, name, error.message.into_owned(), kind),
+        Err(error) => return disabled(view, name, error.message.into_owned(), kind),
     };
     let title = format!("Generate script {}", script.file_name());
     let which = ChosenEnvironment { uri: uri.clone(), environment: name.to_owned() };
     let argument = serde_json::to_value(&which).ok()?;
-    let client = &state.client;
+    let client = &view.client;
     if !client.action_literals {
         return Some(Command::new(title, GENERATE_SCRIPT.to_owned(), Some(vec![argument])).into());
     }
@@ -267,7 +267,7 @@ fn script_action(
     // The command asks; an edit would just replace it.
     let must_ask = matches!(obstacle, Some(WriteError::Changed(_)));
     if let (Some(error), false) = (&obstacle, must_ask) {
-        return disabled(state, name, scripts::reason(error), kind);
+        return disabled(view, name, scripts::reason(error), kind);
     }
     let mut action = CodeAction { title, kind: Some(kind), ..CodeAction::default() };
     if must_ask || !client.create_files {
@@ -289,31 +289,30 @@ fn script_action(
 }
 
 /// A disabled action with the reason why there is no script; nothing where the client does not show those.
-fn disabled(state: &State, name: &str, reason: String, kind: CodeActionKind) -> Option<CodeActionOrCommand> {
-    state.client.disabled_actions.then(|| {
+fn disabled(view: &View, name: &str, reason: String, kind: CodeActionKind) -> Option<CodeActionOrCommand> {
+    view.client.disabled_actions.then(|| {
         let (title, disabled) = (format!("Generate script of {name}"), Some(CodeActionDisabled { reason }));
         CodeAction { title, kind: Some(kind), disabled, ..CodeAction::default() }.into()
     })
 }
 
-/// The key of the program of an action, where finding its edit may take long.
-pub(crate) fn is_long(state: &State, action: &CodeAction) -> Option<String> {
-    let uri = action.data.as_ref()?.get("uri")?.as_str()?;
-    state.if_long(&uri.parse().ok()?)
+/// Returns whether finding the edit of an action may take long.
+pub(crate) fn is_long(view: &View, action: &CodeAction) -> bool {
+    let uri = action.data.as_ref().and_then(|data| data.get("uri")?.as_str()?.parse().ok());
+    uri.is_some_and(|uri| view.is_long(&uri))
 }
 
 /// `codeAction/resolve`: finds the edit of an action that was chosen.
-pub(crate) fn resolve(state: &mut State, action: &CodeAction) -> Result<CodeAction> {
-    let state = &*state;
+pub(crate) fn resolve(view: &View, action: &CodeAction) -> Result<CodeAction> {
     let action = action.clone();
     let Some(data) = &action.data else { return Ok(action) };
     if let Ok(which) = serde_json::from_value::<FixAllOf>(data.clone()) {
-        let edit = Some(workspace_edit(state, &rewriting::edits(state, &which)));
+        let edit = Some(workspace_edit(view, &rewriting::edits(view, &which)));
         return Ok(CodeAction { edit, ..action });
     }
     let which: ChosenEnvironment = serde_json::from_value(data.clone())
         .map_err(|error| Error::invalid_params(format!("not an action of this server: {error}")))?;
-    let script = scripts::generate(state, &which)?;
+    let script = scripts::generate(view, &which)?;
     if let Some(error) = script.obstacle() {
         return Err(scripts::failure(scripts::reason(&error)));
     }

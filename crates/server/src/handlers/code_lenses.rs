@@ -11,13 +11,12 @@ use tower_lsp::ls_types::{CodeLens, CodeLensParams, Command, Location, Range, Ur
 
 use crate::chosen::ChosenEnvironment;
 use crate::client::SHOW_REFERENCES;
-use crate::documents::key;
 use crate::handlers::code_actions::GENERATE_SCRIPT;
 #[cfg(feature = "process")]
 use crate::handlers::runs;
 use crate::positions::LineTable;
-use crate::state::State;
 use crate::typing::Typing;
+use crate::view::View;
 
 /// The commands for an environment, with their labels. The argument of each is a [`ChosenEnvironment`].
 const OF_ENVIRONMENTS: &[(IsShown, &str, &str)] = &[
@@ -53,20 +52,18 @@ struct LensOf {
 }
 
 /// The lenses of a document, which keeps track of them.
-pub(crate) fn code_lenses(state: &mut State, params: &CodeLensParams) -> Option<Vec<CodeLens>> {
+pub(crate) fn code_lenses(view: &View, params: &CodeLensParams) -> Option<Vec<CodeLens>> {
     let uri = &params.text_document.uri;
-    let key = key(uri);
-    if let Some((which, _)) = state.driven_in(uri) {
-        let wanted = &state.workspace.document(&key)?.settings.code_lens;
+    let document = view.document(uri)?;
+    let wanted = &document.settings.code_lens;
+    if let Some((which, _)) = view.driven_in(uri) {
         return Some(of_environment(&which.uri, &which.environment, Range::default(), wanted));
     }
-    let document = state.workspace.document(&key)?;
-    let client = state.clients.entry(key.clone()).or_default();
-    let typing = state.typing.as_ref().filter(|typing| typing.key == key);
+    let typing = view.typing.as_ref().filter(|typing| typing.key == document.key);
     let typed = typing.map_or(&[][..], Typing::unsaved_places);
-    let found = ide::code_lenses(state.workspace.database(), document.file?, typed, &mut client.lenses);
-    let table = LineTable::new(&document.text, state.client.encoding);
-    let wanted = &document.settings.code_lens;
+    let found =
+        ide::code_lenses(view.database(), document.file?, typed, &mut document.memory().lenses.lock());
+    let table = LineTable::new(document.text, view.client.encoding);
     let mut lenses = Vec::new();
     for lens in found {
         let range = table.range(lens.span);
@@ -97,32 +94,32 @@ fn of_environment(uri: &Uri, name: &str, range: Range, wanted: &Wanted) -> Vec<C
 }
 
 /// The references to the declarations of a file, in programs and in scenes.
-fn locations(state: &State, file: FileId, kind: EntityKind, name: &str) -> Vec<Location> {
-    let (database, name) = (state.database(), name.into());
+fn locations(view: &View, file: FileId, kind: EntityKind, name: &str) -> Vec<Location> {
+    let (database, name) = (view.database(), name.into());
     let in_programs = database.references(file, kind, &name).into_iter();
-    let in_programs = in_programs.filter_map(|place| state.location(place.file, place.span));
+    let in_programs = in_programs.filter_map(|place| view.location(place.file, place.span));
     let first = database.definitions(file, kind, &name).first();
     let declared = first.and_then(|id| ide::declaration(database, *id));
     let in_scenes = declared.map(|position| ide::mentions_in_scenes(database, position)).unwrap_or_default();
-    in_programs.chain(state.scene_locations(&in_scenes)).collect()
+    in_programs.chain(view.scene_locations(&in_scenes)).collect()
 }
 
 /// `codeLens/resolve`: counts the references.
-pub(crate) fn resolve(state: &State, lens: &CodeLens) -> Result<CodeLens> {
+pub(crate) fn resolve(view: &View, lens: &CodeLens) -> Result<CodeLens> {
     let lens = lens.clone();
     let Some(data) = &lens.data else { return Ok(lens) };
     let of: LensOf = serde_json::from_value(data.clone())
         .map_err(|error| Error::invalid_params(format!("not a lens of this server: {error}")))?;
     let kind = EntityKind::ALL.into_iter().find(|kind| kind.noun() == of.kind);
-    let known = kind.and_then(|kind| Some((kind, state.analysed(&of.uri)?.1)));
+    let known = kind.and_then(|kind| Some((kind, view.analysed(&of.uri)?.1)));
     // A document may be closed before its lenses are resolved.
-    let places = known.map(|(kind, file)| locations(state, file, kind, &of.name)).unwrap_or_default();
+    let places = known.map(|(kind, file)| locations(view, file, kind, &of.name)).unwrap_or_default();
     let title = match places.len() {
         1 => "1 reference".to_owned(),
         count => format!("{count} references"),
     };
     let mut command = Command::new(title, String::new(), None);
-    if state.client.show_references && !places.is_empty() {
+    if view.client.show_references && !places.is_empty() {
         SHOW_REFERENCES.clone_into(&mut command.command);
         command.arguments = Some(vec![
             serde_json::to_value(&of.uri).unwrap_or_default(),

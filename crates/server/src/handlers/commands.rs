@@ -128,7 +128,7 @@ pub(crate) async fn execute(server: Server, params: ExecuteCommandParams) -> Res
 
 async fn generate_script(server: Server, params: ExecuteCommandParams) -> Result<Option<LSPAny>> {
     let which: ChosenEnvironment = argument(&params)?;
-    let question = scripts::question(&server.state(), &which)?;
+    let question = scripts::question(&server.state().view, &which)?;
     let changed = match question {
         None => Changed::Keep,
         Some(question) => {
@@ -140,12 +140,12 @@ async fn generate_script(server: Server, params: ExecuteCommandParams) -> Result
             Changed::Replace
         }
     };
-    if server.state().provided.is_some() {
+    if server.state().view.provided.is_some() {
         return apply_script(&server, &which).await;
     }
     let (written, runtime) = scripts::write_script(&server.state(), &which, changed, &server.outbox)?;
     finish(runtime).await;
-    let shows_documents = server.state().client.show_document;
+    let shows_documents = server.state().view.client.show_document;
     if shows_documents {
         // The script exists, whether or not the client shows it.
         let _ = server.client.show_document(scripts::show(written)).await;
@@ -155,7 +155,7 @@ async fn generate_script(server: Server, params: ExecuteCommandParams) -> Result
 
 /// Has the client create the script: there is no disk.
 async fn apply_script(server: &Server, which: &ChosenEnvironment) -> Result<Option<LSPAny>> {
-    let edit = scripts::edit(&scripts::generate(&server.state(), which)?);
+    let edit = scripts::edit(&scripts::generate(&server.state().view, which)?);
     let applied = server.client.apply_edit(edit).await?;
     if applied.applied {
         return Ok(None);
@@ -210,7 +210,7 @@ async fn remove_scene(server: Server, params: ExecuteCommandParams) -> Result<Op
 }
 
 fn show_kinematics(server: &Server, params: &ExecuteCommandParams) -> Result<Option<LSPAny>> {
-    hover::show_kinematics(&server.state(), &argument(params)?)
+    hover::show_kinematics(&server.state().view, &argument(params)?)
 }
 
 /// The argument of a command.

@@ -13,7 +13,7 @@ use tower_lsp::ls_types::{
 
 use crate::client::ClientFeatures;
 use crate::documents::Document;
-use crate::state::State;
+use crate::view::View;
 
 /// The maximum number of items with documentation if the client does not resolve it: finding a declaration takes a while in a
 /// long file, and nobody reads them all.
@@ -40,29 +40,28 @@ pub(crate) fn announce(server: &mut ServerCapabilities, _: &ClientFeatures) {
 
 /// Returns the completions at a position: in a program, what the grammar allows and the names that make sense there; in
 /// a settings file or a scene, keys.
-pub(crate) fn completion(state: &mut State, params: &CompletionParams) -> Option<CompletionResponse> {
-    let trigger = trigger(state, params);
-    let state = &*state;
+pub(crate) fn completion(view: &View, params: &CompletionParams) -> Option<CompletionResponse> {
+    let trigger = trigger(view, params);
     let at = &params.text_document_position;
-    if let Some((document, file, text)) = state.toml_text(&at.text_document.uri) {
-        let offset = state.offset(document, at.position);
-        return Some(list(state, document, ide::toml_completions(file, &text, offset, trigger)));
+    if let Some((document, file, text)) = view.toml_text(&at.text_document.uri) {
+        let offset = view.offset(document, at.position);
+        return Some(list(view, document, ide::toml_completions(file, &text, offset, trigger)));
     }
-    let place = state.place(at)?;
+    let place = view.place(at)?;
     let speed = place.document.settings.default_speed;
-    let mut found = ide::completions(state.database(), place.position(), trigger, speed);
+    let mut found = ide::completions(view.database(), place.position(), trigger, speed);
     found.retain(|item| {
-        let path = |file: FileId| state.database().path(file);
-        item.imports.is_none_or(|imported| state.workspace.may_import(path(place.file), path(imported)))
+        let path = |file: FileId| view.database().path(file);
+        item.imports.is_none_or(|imported| view.workspace.may_import(path(place.file), path(imported)))
     });
-    Some(list(state, place.document, found))
+    Some(list(view, place.document, found))
 }
 
 /// The protocol does not distinguish a letter from a request of the user. The first request after a letter, at that letter,
 /// is the editor's own.
-fn trigger(state: &mut State, params: &CompletionParams) -> ide::CompletionTrigger {
+fn trigger(view: &View, params: &CompletionParams) -> ide::CompletionTrigger {
     let at = &params.text_document_position;
-    let is_first_after_letter = state.is_first_completion_after_typing(at);
+    let is_first_after_letter = view.is_first_completion_after_typing(at);
     let context = params.context.as_ref();
     let character = context.and_then(|context| context.trigger_character.as_ref()?.chars().next());
     match (context.map(|context| context.trigger_kind), character) {
@@ -79,36 +78,36 @@ fn trigger(state: &mut State, params: &CompletionParams) -> ide::CompletionTrigg
 
 /// The list is incomplete, so that editors request it again after each character. A list that they filter themselves
 /// would still show a word that is complete, and Enter would accept it instead of starting a new line.
-fn list(state: &State, document: Document<'_>, found: Vec<ide::Completion>) -> CompletionResponse {
+fn list(view: &View, document: Document<'_>, found: Vec<ide::Completion>) -> CompletionResponse {
     let items = found.into_iter().zip(0..);
-    let items = items.map(|(completion, at)| convert(state, document, completion, at)).collect();
+    let items = items.map(|(completion, at)| convert(view, document, completion, at)).collect();
     CompletionResponse::List(CompletionList { is_incomplete: true, items })
 }
 
 /// `completionItem/resolve`: adds the documentation.
-pub(crate) fn resolve(state: &State, item: &CompletionItem) -> Result<CompletionItem> {
+pub(crate) fn resolve(view: &View, item: &CompletionItem) -> Result<CompletionItem> {
     let item = item.clone();
     let Some(data) = &item.data else { return Ok(item) };
     let of: CompletionOf = serde_json::from_value(data.clone())
         .map_err(|error| Error::invalid_params(format!("not a completion of this server: {error}")))?;
     let kind = EntityKind::ALL.into_iter().find(|kind| kind.noun() == of.kind);
-    let home = state.database().file(&of.home);
+    let home = view.database().file(&of.home);
     // The entity may be gone.
     let known = kind.zip(home);
     let text = known.and_then(|(kind, home)| {
-        ide::completion_documentation(state.database(), home, kind, &of.name.as_str().into())
+        ide::completion_documentation(view.database(), home, kind, &of.name.as_str().into())
     });
-    Ok(CompletionItem { documentation: text.and_then(|text| documentation(state, text)), ..item })
+    Ok(CompletionItem { documentation: text.and_then(|text| documentation(view, text)), ..item })
 }
 
 /// `at` is its index in the list, which clients would otherwise sort by label.
-fn convert(state: &State, document: Document<'_>, completion: ide::Completion, at: usize) -> CompletionItem {
-    let is_snippet = completion.is_snippet && state.client.snippets;
+fn convert(view: &View, document: Document<'_>, completion: ide::Completion, at: usize) -> CompletionItem {
+    let is_snippet = completion.is_snippet && view.client.snippets;
     let new_text = if is_snippet { completion.insert.clone() } else { completion.plain() };
-    let range = state.range(document, completion.replace);
+    let range = view.range(document, completion.replace);
     let import = completion
         .import_edit
-        .map(|edit| vec![TextEdit { range: state.range(document, edit.span), new_text: edit.text }]);
+        .map(|edit| vec![TextEdit { range: view.range(document, edit.span), new_text: edit.text }]);
     let mut item = CompletionItem {
         label: completion.label,
         kind: Some(item_kind(completion.kind)),
@@ -121,27 +120,27 @@ fn convert(state: &State, document: Document<'_>, completion: ide::Completion, a
         ..CompletionItem::default()
     };
     match completion.documentation {
-        ide::Documentation::Text(text) => item.documentation = documentation(state, text),
-        ide::Documentation::Of(home, kind) if state.client.resolve_completions => {
-            let home = state.database().path(home).to_owned();
+        ide::Documentation::Text(text) => item.documentation = documentation(view, text),
+        ide::Documentation::Of(home, kind) if view.client.resolve_completions => {
+            let home = view.database().path(home).to_owned();
             let of = CompletionOf { home, kind: kind.noun().to_owned(), name: item.label.clone() };
             item.data = serde_json::to_value(of).ok();
         }
         ide::Documentation::Of(home, kind) if at < MAX_DOCUMENTED => {
             let name = item.label.as_str().into();
-            let text = ide::completion_documentation(state.database(), home, kind, &name);
-            item.documentation = text.and_then(|text| documentation(state, text));
+            let text = ide::completion_documentation(view.database(), home, kind, &name);
+            item.documentation = text.and_then(|text| documentation(view, text));
         }
         ide::Documentation::Of(..) => {}
     }
     item
 }
 
-fn documentation(state: &State, text: String) -> Option<Documentation> {
+fn documentation(view: &View, text: String) -> Option<Documentation> {
     if text.is_empty() {
         return None;
     }
-    Some(match state.client.completion_format.clone() {
+    Some(match view.client.completion_format.clone() {
         Some(kind) => Documentation::MarkupContent(MarkupContent { kind, value: text }),
         None => Documentation::String(text),
     })

@@ -21,9 +21,10 @@ use tower_lsp::ls_types::{
 };
 
 use crate::client::ClientFeatures;
-use crate::documents::{Document, address};
+use crate::documents::Document;
 use crate::message::Outbox;
 use crate::state::State;
+use crate::view::View;
 
 /// The source that editors show with a diagnostic.
 const SOURCE: &str = "pydslrep";
@@ -36,17 +37,15 @@ pub(crate) fn publish(state: &mut State, outbox: &Outbox) -> bool {
     let is_changed = !changes.is_empty() || !closed.is_empty();
     if changes.all {
         // Settings may say where an environment is.
-        state.watched.iter_mut().for_each(|watched| watched.fingerprint = None);
+        state.view.watched.forget_fingerprints();
     }
-    if state.client.pull_diagnostics {
+    if state.view.client.pull_diagnostics {
         if is_changed {
             // Wake all waiters; each re-checks. A cancelled one no longer listens.
             for waiting in state.waiting.drain(..) {
                 let _ = waiting.send(());
             }
         }
-        let State { clients, workspace, .. } = state;
-        clients.retain(|key, _| !changes.documents.contains(key) || workspace.document(key).is_some());
         return is_changed;
     }
     for closed in closed {
@@ -54,7 +53,7 @@ pub(crate) fn publish(state: &mut State, outbox: &Outbox) -> bool {
     }
     let mut keys = changes.documents;
     if changes.all {
-        keys.extend(state.workspace.documents().map(|document| document.key.clone()));
+        keys.extend(state.view.workspace.documents().map(|document| document.key.clone()));
     }
     for key in Workspace::in_order(keys.iter().map(String::as_str)) {
         publish_changed(state, key, outbox);
@@ -63,24 +62,24 @@ pub(crate) fn publish(state: &mut State, outbox: &Outbox) -> bool {
 }
 
 fn publish_changed(state: &mut State, key: &str, outbox: &Outbox) {
-    let Some(document) = state.document_at(key) else {
-        let gone = state.clients.remove(key);
-        let had_some =
-            gone.as_ref().is_some_and(|gone| gone.published.as_ref().is_some_and(|it| !it.is_empty()));
-        if let (true, Some(uri)) = (had_some, address(key, gone.as_ref())) {
+    let State { view, published, .. } = state;
+    let Some(document) = view.document_at(key) else {
+        if let Some((uri, before)) = published.remove(key)
+            && !before.is_empty()
+        {
             publish_one(uri, Vec::new(), None, outbox);
         }
         return;
     };
-    let diagnostics = of_document(state, document);
-    let is_published = match document.published() {
-        Some(published) => published == diagnostics,
+    let diagnostics = of_document(view, document);
+    let is_published = match published.get(key) {
+        Some((_, before)) => *before == diagnostics,
         // A closed file without problems needs no notification.
         None => document.version().is_none() && diagnostics.is_empty(),
     };
     let (false, Some(uri)) = (is_published, document.uri()) else { return };
-    publish_one(uri, diagnostics.clone(), document.version(), outbox);
-    state.clients.entry(key.to_owned()).or_default().published = Some(diagnostics);
+    publish_one(uri.clone(), diagnostics.clone(), document.version(), outbox);
+    published.insert(key.to_owned(), (uri, diagnostics));
 }
 
 fn publish_one(uri: Uri, diagnostics: Vec<Diagnostic>, version: Option<i32>, outbox: &Outbox) {
@@ -99,24 +98,20 @@ pub(crate) fn announce(server: &mut ServerCapabilities, client: &ClientFeatures)
     });
 }
 
-/// The key of a document with so many problems that converting them takes longer than handing it to another thread.
-pub(crate) fn has_many(state: &State, params: &DocumentDiagnosticParams) -> Option<String> {
+/// Returns whether a document has so many problems that converting them takes longer than handing it to another thread.
+pub(crate) fn has_many(view: &View, params: &DocumentDiagnosticParams) -> bool {
     /// Entities with problems; one takes a few microseconds.
     const MANY: usize = 500;
-    let document = state.document(&params.text_document.uri)?;
-    (state.database().count_troubled(document.file?) > MANY).then(|| document.key.to_owned())
+    let file = view.document(&params.text_document.uri).and_then(|document| document.file);
+    file.is_some_and(|file| view.database().count_troubled(file) > MANY)
 }
 
 /// `textDocument/diagnostic`. The result's id depends on the diagnostics and on when the document was opened, not on its
 /// version, which may start again from the beginning.
 #[expect(clippy::unnecessary_wraps, reason = "what answers without a null look like")]
-pub(crate) fn pull(
-    state: &mut State,
-    params: &DocumentDiagnosticParams,
-) -> Result<DocumentDiagnosticReportResult> {
-    let state = &*state;
-    let document = state.document(&params.text_document.uri);
-    let items = document.map(|document| of_document(state, document)).unwrap_or_default();
+pub(crate) fn pull(view: &View, params: &DocumentDiagnosticParams) -> Result<DocumentDiagnosticReportResult> {
+    let document = view.document(&params.text_document.uri);
+    let items = document.map(|document| of_document(view, document)).unwrap_or_default();
     let result_id = result_id(&items, document.map_or(0, Document::opening));
     let report = if params.previous_result_id.as_ref() == Some(&result_id) {
         DocumentDiagnosticReport::Unchanged(RelatedUnchangedDocumentDiagnosticReport {
@@ -157,37 +152,37 @@ struct Unsettled {
 
 /// All diagnostics of a document, as this client can show them. Of the statement being typed, what its next word will
 /// settle is marked where the client pulls, and otherwise left out.
-pub(crate) fn of_document(state: &State, document: Document<'_>) -> Vec<Diagnostic> {
-    let found = document.file.map(|file| state.database().diagnostics(file)).unwrap_or_default();
-    let statements = if found.is_empty() { Vec::new() } else { state.statements_being_typed(document) };
+pub(crate) fn of_document(view: &View, document: Document<'_>) -> Vec<Diagnostic> {
+    let found = document.file.map(|file| view.database().diagnostics(file)).unwrap_or_default();
+    let statements = if found.is_empty() { Vec::new() } else { view.statements_being_typed(document) };
     let in_program = found.iter().filter_map(|diagnostic| {
         let Some(statement) = statements.iter().find(|statement| statement.settles(diagnostic)) else {
-            return convert(state, document, diagnostic);
+            return convert(view, document, diagnostic);
         };
-        let converted = convert(state, document, diagnostic).filter(|_| state.client.pull_diagnostics)?;
-        let typed_line = state.range(document, Span::at(statement.offset())).start.line;
+        let converted = convert(view, document, diagnostic).filter(|_| view.client.pull_diagnostics)?;
+        let typed_line = view.range(document, Span::at(statement.offset())).start.line;
         Some(Diagnostic { data: serde_json::to_value(Unsettled { typed_line }).ok(), ..converted })
     });
-    let problems = state.workspace.problems(document.key).into_iter();
-    in_program.chain(problems.map(|problem| convert_problem(state, document, problem))).collect()
+    let problems = view.workspace.problems(document.key).into_iter();
+    in_program.chain(problems.map(|problem| convert_problem(view, document, problem))).collect()
 }
 
 /// One diagnostic, as this client can show it; `None` where it is switched off.
 pub(crate) fn convert(
-    state: &State,
+    view: &View,
     document: Document<'_>,
     diagnostic: &analysis::Diagnostic,
 ) -> Option<Diagnostic> {
-    let client = &state.client;
+    let client = &view.client;
     let chosen = document.settings.severities.severity(diagnostic.code(), diagnostic.severity)?;
     Some(Diagnostic {
-        range: state.range(document, diagnostic.span),
+        range: view.range(document, diagnostic.span),
         severity: Some(severity(chosen)),
         code: Some(NumberOrString::String(diagnostic.code().to_owned())),
         code_description: client.code_description.then(|| page(client, diagnostic.code())).flatten(),
         source: Some(SOURCE.to_owned()),
-        message: message(state, diagnostic),
-        related_information: related_information(state, diagnostic),
+        message: message(view, diagnostic),
+        related_information: related_information(view, diagnostic),
         tags: diagnostic
             .rule
             .tag
@@ -199,9 +194,9 @@ pub(crate) fn convert(
 }
 
 /// One problem of a `pydslrep.toml` or a scene.
-pub(crate) fn convert_problem(state: &State, document: Document<'_>, problem: Problem) -> Diagnostic {
+pub(crate) fn convert_problem(view: &View, document: Document<'_>, problem: Problem) -> Diagnostic {
     Diagnostic {
-        range: state.range(document, problem.span.unwrap_or(Span::at(0))),
+        range: view.range(document, problem.span.unwrap_or(Span::at(0))),
         severity: Some(DiagnosticSeverity::ERROR),
         code: Some(NumberOrString::String(problem.kind.code().to_owned())),
         source: Some(SOURCE.to_owned()),
@@ -230,7 +225,7 @@ fn tag(tag: Tag) -> DiagnosticTag {
 }
 
 /// The headline, then help and note; and the related locations, where the client cannot show them otherwise.
-fn message(state: &State, diagnostic: &analysis::Diagnostic) -> String {
+fn message(view: &View, diagnostic: &analysis::Diagnostic) -> String {
     let mut message = diagnostic.message.clone();
     // Writing to a string cannot fail.
     if let Some(help) = &diagnostic.help {
@@ -239,9 +234,9 @@ fn message(state: &State, diagnostic: &analysis::Diagnostic) -> String {
     if let Some(note) = &diagnostic.note {
         let _ = write!(message, "\nnote: {note}");
     }
-    if !state.client.related_information {
+    if !view.client.related_information {
         for related in &diagnostic.related {
-            if let Some(place) = state.location(related.file, related.span) {
+            if let Some(place) = view.location(related.file, related.span) {
                 let _ = write!(message, "\nline {}: {}", place.range.start.line + 1, related.message);
             }
         }
@@ -250,14 +245,14 @@ fn message(state: &State, diagnostic: &analysis::Diagnostic) -> String {
 }
 
 fn related_information(
-    state: &State,
+    view: &View,
     diagnostic: &analysis::Diagnostic,
 ) -> Option<Vec<DiagnosticRelatedInformation>> {
-    if !state.client.related_information || diagnostic.related.is_empty() {
+    if !view.client.related_information || diagnostic.related.is_empty() {
         return None;
     }
     let convert = |related: &analysis::Related| {
-        let location = state.location(related.file, related.span)?;
+        let location = view.location(related.file, related.span)?;
         Some(DiagnosticRelatedInformation { location, message: related.message.clone() })
     };
     Some(diagnostic.related.iter().filter_map(convert).collect())

@@ -8,15 +8,15 @@ use tower_lsp::ls_types::{DocumentSymbolParams, Location, Range, SymbolInformati
 
 use crate::message::WriteJson;
 use crate::positions::LineTable;
-use crate::state::State;
+use crate::view::View;
 use crate::work::Work;
 
 /// The outline of a document.
-pub(crate) fn document_symbols(state: &mut State, params: &DocumentSymbolParams) -> Option<Work<Outline>> {
-    let as_tree = state.client.symbol_tree;
+pub(crate) fn document_symbols(view: &View, params: &DocumentSymbolParams) -> Option<Work<Outline>> {
+    let as_tree = view.client.symbol_tree;
     let uri = params.text_document.uri.clone();
-    if let Some((document, file, text)) = state.toml_text(&uri) {
-        let table = LineTable::new(document.text, state.client.encoding);
+    if let Some((document, file, text)) = view.toml_text(&uri) {
+        let table = LineTable::new(document.text, view.client.encoding);
         let symbols = ide::toml_symbols(file, &text);
         return Some(Work::Done(if as_tree {
             Outline::Ready(table, symbols)
@@ -26,7 +26,7 @@ pub(crate) fn document_symbols(state: &mut State, params: &DocumentSymbolParams)
             Outline::List(flat)
         }));
     }
-    state.work(&params.text_document.uri, |_, encoding| {
+    view.work(&params.text_document.uri, |_, encoding| {
         Box::new(move |snapshot| {
             let table = LineTable::new(snapshot.text(), encoding);
             if as_tree {

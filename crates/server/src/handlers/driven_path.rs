@@ -1,6 +1,8 @@
 //! `pydslrep/drivenPath`, a request of our own: where the robots were in the latest run of an environment, and
 //! `pydslrep/drivenPathChanged`, the notification of another run. Both are described in `docs/protocol.md`.
 
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
 use rustc_hash::FxHashMap;
 use serde_json::Value;
 #[cfg(feature = "process")]
@@ -36,9 +38,12 @@ impl Notification for DrivenPathChanged {
     const METHOD: &'static str = "pydslrep/drivenPathChanged";
 }
 
-/// The latest path of each environment that was run in this session.
+/// The latest path of each environment that was run in this session; clones share them.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct DrivenPaths(Arc<Mutex<Driven>>);
+
 #[derive(Debug, Default)]
-pub(crate) struct DrivenPaths {
+struct Driven {
     /// By the program's key and the environment's name.
     paths: FxHashMap<(String, String), Value>,
     /// The audiences of each environment, which are notified of changes.
@@ -48,18 +53,18 @@ pub(crate) struct DrivenPaths {
 impl DrivenPaths {
     /// The path of the latest run of an environment; `None` where there was none. From now on its audience is
     /// notified of another.
-    pub(crate) fn watch(&mut self, which: &ChosenEnvironment, audience: Audience) -> Option<Value> {
-        let watched = (audience, which.clone());
-        if !self.watched.contains(&watched) {
-            self.watched.push(watched);
+    pub(crate) fn watch(&self, which: &ChosenEnvironment, audience: Audience) -> Option<Value> {
+        let (mut driven, watched) = (self.lock(), (audience, which.clone()));
+        if !driven.watched.contains(&watched) {
+            driven.watched.push(watched);
         }
-        self.paths.get(&place(which)).cloned()
+        driven.paths.get(&place(which)).cloned()
     }
 
     /// Adds the path of a run that has ended, successfully or not; it may not have written any of these files.
     #[cfg(feature = "process")]
     pub(crate) fn add(
-        &mut self,
+        &self,
         which: &ChosenEnvironment,
         trace: &std::path::Path,
         map: &std::path::Path,
@@ -71,8 +76,9 @@ impl DrivenPaths {
             return;
         }
         let path = serde_json::json!({ "environment": which.environment, "robots": robots });
-        self.paths.insert(place(which), path);
-        self.watched.retain(|(audience, watched)| {
+        let mut driven = self.lock();
+        driven.paths.insert(place(which), path);
+        driven.watched.retain(|(audience, watched)| {
             let is_other = place(watched) != place(which);
             match audience {
                 _ if is_other => {}
@@ -81,6 +87,10 @@ impl DrivenPaths {
             }
             is_other
         });
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Driven> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use tower_lsp::jsonrpc::{Error, Result};
 use tower_lsp::ls_types::request::Request;
 
-use crate::state::State;
+use crate::view::View;
 
 /// The request.
 pub(crate) enum Explain {}
@@ -35,7 +35,7 @@ pub(crate) struct Explanation {
 /// # Errors
 ///
 /// If there is no such diagnostic.
-pub(crate) fn explain(_: &State, of: &DiagnosticCode) -> Result<Explanation> {
+pub(crate) fn explain(_: &View, of: &DiagnosticCode) -> Result<Explanation> {
     let rule = find_rule(&of.code).map_err(|unknown| Error::invalid_params(unknown.message))?;
     Ok(Explanation { markdown: rule.manual() })
 }

@@ -23,6 +23,7 @@ use crate::documents::key;
 use crate::handlers::code_actions;
 use crate::server::Server;
 use crate::state::State;
+use crate::view::View;
 
 /// The operations that matter to programs: on themselves, on folders, which may hold some, on settings and on scenes.
 pub(crate) fn announce(server: &mut ServerCapabilities, _: &ClientFeatures) {
@@ -49,20 +50,20 @@ pub(crate) fn announce(server: &mut ServerCapabilities, _: &ClientFeatures) {
 
 /// The edits that keep all imports valid, and environments of the same name as their scenes; `None` where none is
 /// needed.
-pub(crate) fn will_rename(state: &State, params: &RenameFilesParams) -> Option<WorkspaceEdit> {
+pub(crate) fn will_rename(view: &View, params: &RenameFilesParams) -> Option<WorkspaceEdit> {
     let path = |uri: &str| Some(key(&Uri::from_str(uri).ok()?).trim_end_matches('/').to_owned());
     let renames: Vec<ide::FileRename> = params
         .files
         .iter()
         .filter_map(|file| Some(ide::FileRename { from: path(&file.old_uri)?, to: path(&file.new_uri)? }))
         .collect();
-    let mut edits = ide::rename_files(state.database(), &renames);
-    edits.extend(renames.iter().flat_map(|rename| environment_renamed(state, rename)));
-    (!edits.is_empty()).then(|| code_actions::workspace_edit(state, &edits))
+    let mut edits = ide::rename_files(view.database(), &renames);
+    edits.extend(renames.iter().flat_map(|rename| environment_renamed(view, rename)));
+    (!edits.is_empty()).then(|| code_actions::workspace_edit(view, &edits))
 }
 
 /// The edits that give the environment of a scene its new name, where that is one.
-fn environment_renamed(state: &State, rename: &ide::FileRename) -> Vec<Edit> {
+fn environment_renamed(view: &View, rename: &ide::FileRename) -> Vec<Edit> {
     let parts = |path: &str| {
         let (folder, name) = path.rsplit_once('/')?;
         Some((folder.to_owned(), name.strip_suffix(ENDING)?.to_owned()))
@@ -74,10 +75,10 @@ fn environment_renamed(state: &State, rename: &ide::FileRename) -> Vec<Edit> {
     if from != to {
         return Vec::new();
     }
-    let environments = state.workspace.environments_of_scene(&rename.from).into_iter();
+    let environments = view.workspace.environments_of_scene(&rename.from).into_iter();
     let edits = environments.filter_map(|id| {
-        let position = ide::declaration(state.database(), id)?;
-        ide::rename(state.database(), position, &name).ok()
+        let position = ide::declaration(view.database(), id)?;
+        ide::rename(view.database(), position, &name).ok()
     });
     edits.flatten().collect()
 }
@@ -110,11 +111,11 @@ pub(crate) async fn did_delete(server: Server, params: DeleteFilesParams) {
 fn remove<'a>(state: &mut State, addresses: impl Iterator<Item = &'a str>) {
     for uri in addresses.filter_map(|address| Uri::from_str(address).ok()) {
         let [folder] = &folders([&uri])[..] else { continue };
-        let inside = state.workspace.documents().filter(|document| document.key.starts_with(folder));
+        let inside = state.view.workspace.documents().filter(|document| document.key.starts_with(folder));
         let inside: Vec<String> = inside.map(|document| document.key.clone()).collect();
         state.file_changed(&uri);
         for key in inside {
-            state.workspace.file_changed(&key);
+            state.workspace_mut().file_changed(&key);
         }
     }
 }
@@ -127,9 +128,9 @@ fn add<'a>(state: &mut State, addresses: impl Iterator<Item = &'a str>) -> Vec<S
             state.file_changed(&uri);
             continue;
         }
-        new.extend(folders([&uri]).into_iter().filter(|folder| state.workspace.contains(folder)));
+        new.extend(folders([&uri]).into_iter().filter(|folder| state.view.workspace.contains(folder)));
         // It may contain a file of settings.
-        state.workspace.settings_files_changed();
+        state.workspace_mut().settings_files_changed();
     }
     new
 }

@@ -4,16 +4,13 @@ use pydslrep_ide as ide;
 use tower_lsp::ls_types::{FoldingRange, FoldingRangeKind, FoldingRangeParams, Range};
 
 use crate::positions::LineTable;
-use crate::state::State;
+use crate::view::View;
 use crate::work::Work;
 
 /// Everything in a document that can be folded.
-pub(crate) fn folding_ranges(
-    state: &mut State,
-    params: &FoldingRangeParams,
-) -> Option<Work<Vec<FoldingRange>>> {
-    let whole_lines = state.client.line_folding_only;
-    state.work(&params.text_document.uri, |_, encoding| {
+pub(crate) fn folding_ranges(view: &View, params: &FoldingRangeParams) -> Option<Work<Vec<FoldingRange>>> {
+    let whole_lines = view.client.line_folding_only;
+    view.work(&params.text_document.uri, |_, encoding| {
         Box::new(move |snapshot| {
             let table = LineTable::new(snapshot.text(), encoding);
             let folds = ide::folding_ranges(&snapshot);

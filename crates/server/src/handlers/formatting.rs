@@ -11,22 +11,19 @@ use tower_lsp::ls_types::{
 
 use crate::client::ClientFeatures;
 use crate::positions::{Encoding, LineTable, to_span};
-use crate::state::State;
+use crate::view::View;
 use crate::work::Work;
 
 /// The edits that format a document.
-pub(crate) fn document(state: &mut State, params: &DocumentFormattingParams) -> Option<Work<Vec<TextEdit>>> {
-    state.work(&params.text_document.uri, |_, encoding| {
+pub(crate) fn document(view: &View, params: &DocumentFormattingParams) -> Option<Work<Vec<TextEdit>>> {
+    view.work(&params.text_document.uri, |_, encoding| {
         Box::new(move |snapshot| convert(&snapshot, encoding, ide::format(&snapshot)))
     })
 }
 
 /// The same for a range.
-pub(crate) fn range(
-    state: &mut State,
-    params: &DocumentRangeFormattingParams,
-) -> Option<Work<Vec<TextEdit>>> {
-    state.work(&params.text_document.uri, |document, encoding| {
+pub(crate) fn range(view: &View, params: &DocumentRangeFormattingParams) -> Option<Work<Vec<TextEdit>>> {
+    view.work(&params.text_document.uri, |document, encoding| {
         let span = to_span(document.text, params.range, encoding);
         Box::new(move |snapshot| convert(&snapshot, encoding, ide::format_range(&snapshot, span)))
     })
@@ -40,17 +37,17 @@ pub(crate) fn announce_on_type(server: &mut ServerCapabilities, _: &ClientFeatur
 }
 
 /// The edits after a character was typed.
-pub(crate) fn on_type(state: &State, params: &DocumentOnTypeFormattingParams) -> Option<Vec<TextEdit>> {
-    let place = state.place(&params.text_document_position)?;
+pub(crate) fn on_type(view: &View, params: &DocumentOnTypeFormattingParams) -> Option<Vec<TextEdit>> {
+    let place = view.place(&params.text_document_position)?;
     let edits = match params.ch.as_str() {
-        "}" => ide::format_after_brace(state.database(), place.position()),
-        "\n" => ide::format_after_line_break(state.database(), place.position()),
+        "}" => ide::format_after_brace(view.database(), place.position()),
+        "\n" => ide::format_after_line_break(view.database(), place.position()),
         _ => Vec::new(),
     };
     Some(
         edits
             .into_iter()
-            .map(|edit| TextEdit::new(state.range(place.document, edit.span), edit.text))
+            .map(|edit| TextEdit::new(view.range(place.document, edit.span), edit.text))
             .collect(),
     )
 }

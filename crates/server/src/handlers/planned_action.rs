@@ -10,7 +10,7 @@ use tower_lsp::ls_types::{Location, TextDocumentPositionParams, Uri};
 
 use crate::chosen::ChosenEnvironment;
 use crate::handlers::scripts::environment;
-use crate::state::State;
+use crate::view::View;
 
 /// The request for the environments and the action at a position.
 pub(crate) enum PlannedAt {}
@@ -52,11 +52,10 @@ pub(crate) struct At {
 /// Returns the environments and the action at a position; `None` if the document is not open, or is neither a program
 /// nor the scene of one. An environment being typed is named once it lists robots: before, its name changes with each
 /// letter.
-pub(crate) fn planned_at(state: &mut State, at: &TextDocumentPositionParams) -> Option<At> {
-    let state = &*state;
-    if let Some(place) = state.place(at) {
-        let mut planned = ide::planned_at(state.database(), place.position());
-        for statement in state.statements_being_typed(place.document) {
+pub(crate) fn planned_at(view: &View, at: &TextDocumentPositionParams) -> Option<At> {
+    if let Some(place) = view.place(at) {
+        let mut planned = ide::planned_at(view.database(), place.position());
+        for statement in view.statements_being_typed(place.document) {
             if let Some(begun) = statement.begun_environment() {
                 planned.environments.retain(|name| name != begun);
                 planned.using.retain(|name| name != begun);
@@ -64,7 +63,7 @@ pub(crate) fn planned_at(state: &mut State, at: &TextDocumentPositionParams) -> 
         }
         return Some(At { planned, program: None });
     }
-    let (which, _) = state.driven_in(&at.text_document.uri)?;
+    let (which, _) = view.driven_in(&at.text_document.uri)?;
     let (environments, using) = (vec![which.environment.clone()], vec![which.environment]);
     let planned = ide::PlannedAt { environments, using, action: None };
     Some(At { planned, program: Some(which.uri) })
@@ -75,8 +74,8 @@ pub(crate) fn planned_at(state: &mut State, at: &TextDocumentPositionParams) -> 
 /// # Errors
 ///
 /// If the document is not open, or has no such environment.
-pub(crate) fn action_location(state: &State, of: &ActionOf) -> Result<Option<Location>> {
-    let id = environment(state, &of.which)?;
-    let place = ide::action_place(state.database(), id, &of.action);
-    Ok(place.and_then(|(file, span)| state.location(file, span)))
+pub(crate) fn action_location(view: &View, of: &ActionOf) -> Result<Option<Location>> {
+    let id = environment(view, &of.which)?;
+    let place = ide::action_place(view.database(), id, &of.action);
+    Ok(place.and_then(|(file, span)| view.location(file, span)))
 }

@@ -1,8 +1,12 @@
 //! The live preview: a page in a browser, for editors that cannot draw, with the planned path of the program in the
 //! editor. `docs/protocol.md` describes its messages, which are those of the protocol and a few more.
 
-use pydslrep_workspace::Document;
-use serde::de::DeserializeOwned;
+use std::sync::Arc;
+
+use futures::FutureExt;
+use hyper::body::Bytes;
+use pydslrep_ide as ide;
+use pydslrep_workspace::DocumentKind;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use tower_lsp::jsonrpc::{Error, Id, Result};
@@ -14,6 +18,7 @@ use tower_lsp::ls_types::{
 };
 
 use crate::chosen::ChosenEnvironment;
+use crate::dispatch::{Table, read, run};
 use crate::documents::key;
 use crate::handlers::code_actions;
 use crate::handlers::driven_path::DrivenPath;
@@ -21,10 +26,11 @@ use crate::handlers::planned_action::{self, ActionLocation, PlannedAt};
 use crate::handlers::planned_path::{self, PlannedPath};
 use crate::handlers::scripts::failure;
 use crate::log::log;
-use crate::message::{Body, Incoming, encode, encode_answer, encode_error, parse};
+use crate::message::{Body, Incoming, encode, encode_error, parse};
 use crate::page::{Audience, Cursor, CursorMoved, notification};
 use crate::server::Server;
 use crate::state::State;
+use crate::view::View;
 use crate::web::{File, Site, WebServer};
 
 /// Opens the live preview.
@@ -83,7 +89,7 @@ struct FixOf {
 /// The command [`OPEN_PREVIEW`]: opens the page in a browser, or says where it is.
 pub(crate) async fn open(server: Server, shown: Shown) -> Result<Option<LSPAny>> {
     let address = start(&server, shown, 0)?;
-    let can_show = server.state().client.show_document;
+    let can_show = server.state().view.client.show_document;
     let is_shown = match address.parse() {
         Ok(uri) if can_show => {
             let params = ShowDocumentParams { uri, external: Some(true), take_focus: None, selection: None };
@@ -137,109 +143,92 @@ fn cursor(state: &State, shown: Shown) -> Result<Cursor> {
 
 /// The program that the client has opened last.
 fn last_opened(state: &State) -> Option<Uri> {
-    let open = state.clients.iter().filter(|(_, client)| client.version.is_some());
-    let programs = open.filter(|(key, _)| state.workspace.document(key).is_some_and(Document::is_program));
-    programs.max_by_key(|(_, client)| client.opening).and_then(|(_, client)| client.uri.clone())
+    let open = state.view.open.keys().filter_map(|key| state.view.document_at(key));
+    let programs = open.filter(|document| document.kind == DocumentKind::Program);
+    programs.max_by_key(|document| document.opening())?.uri()
 }
 
 fn site(server: Server) -> Site {
-    let greeter = server.clone();
+    let (greeter, requests) = (server.clone(), Arc::new(requests()));
     Site {
         files: FILES,
         greet: Box::new(move || notification::<CursorMoved>(&greeter.state().pages.cursor().cloned())),
-        answer: Box::new(move |message| answer(&server, message)),
+        answer: Box::new(move |message| answer(server.clone(), Arc::clone(&requests), message).boxed()),
     }
 }
 
-/// Answers a message of a page.
-fn answer(server: &Server, message: &[u8]) -> Body {
-    let (method, id, params) = match parse(message) {
-        Ok(Incoming::Request(request)) => request.into_parts(),
-        Ok(Incoming::Response(response)) => {
-            return encode_error(response.id().clone(), Error::invalid_request());
-        }
-        Err(refusal) => return encode(&refusal),
-    };
-    let id = id.unwrap_or_default();
-    let params = params.unwrap_or_default();
-    let answered = match &*method {
-        PlannedPath::METHOD => planned_path(server, &id, params),
-        PlannedAt::METHOD => planned_at(server, &id, params),
-        DrivenPath::METHOD => read(params).map(|which: ChosenEnvironment| {
-            encode_answer(&id, &server.state().driven.watch(&which, Audience::Page))
-        }),
-        ActionLocation::METHOD => read(params).and_then(|of| {
-            let location = planned_action::action_location(&server.state(), &of)?;
-            Ok(encode_answer(&id, &location))
-        }),
-        Reveal::METHOD => read(params).map(|location| encode_answer(&id, &reveal(server, location))),
-        ApplyFix::METHOD => read(params).map(|fix| encode_answer(&id, &apply_fix(server, &fix))),
-        _ => Err(Error::method_not_found()),
-    };
-    answered.unwrap_or_else(|error| encode_error(id, error))
+/// The requests of pages.
+fn requests() -> Table {
+    let mut table = Table::default();
+    table.add(
+        read::<PlannedPath, _>(planned_path)
+            .noting(|state, which| state.view.watched.watch(which, Audience::Page))
+            .beside_if(|view, which| view.is_long(&which.uri)),
+    );
+    table.add(read::<DrivenPath, _>(|view, which| view.driven.watch(which, Audience::Page)));
+    table.add(
+        read::<PlannedAt, _>(planned_action::planned_at)
+            .beside_if(|view, at| view.is_long(&at.text_document.uri)),
+    );
+    table.add(read::<ActionLocation, _>(planned_action::action_location));
+    table.add(run::<Reveal, _>(reveal));
+    table.add(run::<ApplyFix, _>(apply_fix));
+    table
 }
 
-fn planned_path(server: &Server, id: &Id, params: Value) -> Result<Body> {
-    let which: ChosenEnvironment = read(params)?;
-    planned_path::watch(&mut server.state(), &which, Audience::Page);
-    let path =
-        server.read_latest(&which.uri, |state| planned_path::planned_path(state, &which, Audience::Page));
-    let path = path.map_err(|mut error| {
-        // Fixes that the page cannot apply are not offered.
-        if !server.state().client.applies_edits
+/// Answers a message of a page.
+async fn answer(server: Server, requests: Arc<Table>, message: Bytes) -> Body {
+    match parse(&message) {
+        Ok(Incoming::Request(request)) => {
+            let answer = requests.answer_page(&server, request).await;
+            answer.unwrap_or_else(|| encode_error(Id::Null, Error::invalid_request()))
+        }
+        Ok(Incoming::Response(response)) => encode_error(response.id().clone(), Error::invalid_request()),
+        Err(refusal) => encode(&refusal),
+    }
+}
+
+/// A planned path for a page; fixes that the page cannot apply are not offered.
+fn planned_path(view: &View, which: &ChosenEnvironment) -> Result<ide::PlannedPath> {
+    planned_path::planned_path(view, which, Audience::Page).map_err(|mut error| {
+        if !view.client.applies_edits
             && let Some(Value::Object(data)) = &mut error.data
         {
             data.remove("fix");
         }
         error
-    })?;
-    Ok(encode_answer(id, &path))
-}
-
-fn planned_at(server: &Server, id: &Id, params: Value) -> Result<Body> {
-    let at: TextDocumentPositionParams = read(params)?;
-    let found = server.read_latest(&at.text_document.uri, |state| planned_action::planned_at(state, &at));
-    Ok(encode_answer(id, &found))
+    })
 }
 
 /// Has the editor select a location in a program; false if it cannot.
-fn reveal(server: &Server, Location { uri, range }: Location) -> bool {
-    let can_show = |state: &State| state.client.show_document && state.document(&uri).is_some();
-    if !can_show(&server.state()) {
-        return false;
+async fn reveal(server: Server, Location { uri, range }: Location) -> Result<bool> {
+    let can_show = |view: &View| view.client.show_document && view.document(&uri).is_some();
+    if !can_show(&server.state().view) {
+        return Ok(false);
     }
-    let client = server.client.clone();
+    let client = server.client;
     let params = ShowDocumentParams { uri, external: None, take_focus: Some(true), selection: Some(range) };
+    // The page need not wait for the user.
     tokio::spawn(async move {
         if let Err(error) = client.send_request::<ShowDocument>(params).await {
             log(format_args!("the client did not show an action: {error}"));
         }
     });
-    true
+    Ok(true)
 }
 
 /// Has the editor apply a fix; false if it cannot, or there is no such fix any more.
-fn apply_fix(server: &Server, of: &FixOf) -> bool {
+async fn apply_fix(server: Server, of: FixOf) -> Result<bool> {
     let edit = {
-        let state = &mut *server.state();
-        if !state.client.applies_edits {
-            return false;
-        }
-        code_actions::quick_fix(state, &of.location, &of.fix)
+        let view = &server.state().view;
+        view.client.applies_edits.then(|| code_actions::quick_fix(view, &of.location, &of.fix)).flatten()
     };
-    let Some(edit) = edit else { return false };
-    let client = server.client.clone();
+    let Some(edit) = edit else { return Ok(false) };
+    let client = server.client;
     tokio::spawn(async move {
         if let Err(error) = client.apply_edit(edit).await {
             log(format_args!("the client did not apply a fix: {error}"));
         }
     });
-    true
-}
-
-/// # Errors
-///
-/// If they are not the parameters of the method.
-fn read<T: DeserializeOwned>(params: Value) -> Result<T> {
-    serde_json::from_value(params).map_err(|error| Error::invalid_params(error.to_string()))
+    Ok(true)
 }

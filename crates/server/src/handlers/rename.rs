@@ -12,7 +12,7 @@ use crate::client::ClientFeatures;
 use crate::documents::{Document, uri_of};
 use crate::edits::Edits;
 use crate::handlers::scripts;
-use crate::state::{Named, State};
+use crate::view::{Named, View};
 
 /// The pattern of names: editors stop linked editing when the text no longer matches.
 const NAME_PATTERN: &str = r"\^?[A-Za-z_][A-Za-z0-9_]*";
@@ -32,13 +32,13 @@ pub(crate) fn announce(server: &mut ServerCapabilities, client: &ClientFeatures)
 ///
 /// If there is none, or it cannot be renamed; the message is the reason.
 pub(crate) fn prepare(
-    state: &State,
+    view: &View,
     params: &TextDocumentPositionParams,
 ) -> Result<Option<PrepareRenameResponse>> {
-    let Some(named) = renamed_at(state, params)? else { return Ok(None) };
-    let target = ide::prepare_rename(state.database(), named.position).map_err(refused)?;
+    let Some(named) = renamed_at(view, params)? else { return Ok(None) };
+    let target = ide::prepare_rename(view.database(), named.position).map_err(refused)?;
     Ok(Some(PrepareRenameResponse::RangeWithPlaceholder {
-        range: state.range(named.document, named.span.unwrap_or(target.span)),
+        range: view.range(named.document, named.span.unwrap_or(target.span)),
         placeholder: target.text,
     }))
 }
@@ -48,22 +48,21 @@ pub(crate) fn prepare(
 /// # Errors
 ///
 /// If it is refused; the message is the reason.
-pub(crate) fn rename(state: &mut State, params: &RenameParams) -> Result<Option<WorkspaceEdit>> {
-    let state = &*state;
-    let Some(named) = renamed_at(state, &params.text_document_position)? else { return Ok(None) };
-    let (database, new) = (state.database(), &params.new_name);
+pub(crate) fn rename(view: &View, params: &RenameParams) -> Result<Option<WorkspaceEdit>> {
+    let Some(named) = renamed_at(view, &params.text_document_position)? else { return Ok(None) };
+    let (database, new) = (view.database(), &params.new_name);
     let edits = ide::rename(database, named.position, new).map_err(refused)?;
     let in_scenes = ide::rename_in_scenes(database, named.position, new).map_err(refused)?;
-    let mut all = Edits::of_programs(state, &edits);
+    let mut all = Edits::of_programs(view, &edits);
     for (place, text) in in_scenes.edits {
-        if let Some(document) = state.scene_document(place.program, &place.environment) {
-            all.add(state, document, place.span, text);
+        if let Some(document) = view.scene_document(place.program, &place.environment) {
+            all.add(view, document, place.span, text);
         }
     }
     if let Some((place, name)) = &in_scenes.renamed {
-        all.renamed = moved_scene(state, place, name)?;
+        all.renamed = moved_scene(view, place, name)?;
     }
-    Ok(Some(all.finish(state)))
+    Ok(Some(all.finish(view)))
 }
 
 /// The name that is to be renamed. The table of robots in a scene stands for its environment, but has another name.
@@ -71,10 +70,10 @@ pub(crate) fn rename(state: &mut State, params: &RenameParams) -> Result<Option<
 /// # Errors
 ///
 /// In a scene, where there is no name of a program.
-fn renamed_at<'a>(state: &'a State, at: &TextDocumentPositionParams) -> Result<Option<Named<'a>>> {
-    let named = state.named(at);
-    let is_scene = |document| state.environment_of_scene(document).is_some();
-    if !state.document(&at.text_document.uri).is_some_and(is_scene) {
+fn renamed_at<'a>(view: &'a View, at: &TextDocumentPositionParams) -> Result<Option<Named<'a>>> {
+    let named = view.named(at);
+    let is_scene = |document| view.environment_of_scene(document).is_some();
+    if !view.document(&at.text_document.uri).is_some_and(is_scene) {
         return Ok(named);
     }
     let is_name =
@@ -91,8 +90,8 @@ fn renamed_at<'a>(state: &'a State, at: &TextDocumentPositionParams) -> Result<O
 /// # Errors
 ///
 /// If it cannot go there.
-fn moved_scene(state: &State, place: &ide::ScenePlace, name: &str) -> Result<Option<(Uri, Uri)>> {
-    let workspace = &state.workspace;
+fn moved_scene(view: &View, place: &ide::ScenePlace, name: &str) -> Result<Option<(Uri, Uri)>> {
+    let workspace = &view.workspace;
     let keys =
         workspace.scene_key(place.program, &place.environment).zip(workspace.scene_key(place.program, name));
     let Some((old, new)) = keys else { return Ok(None) };
@@ -109,23 +108,23 @@ fn moved_scene(state: &State, place: &ide::ScenePlace, name: &str) -> Result<Opt
     if is_taken {
         return Err(scripts::failure(format!("there is already a file `{new_name}`")));
     }
-    if !state.client.rename_files {
+    if !view.client.rename_files {
         return Err(scripts::failure(format!(
             "this editor cannot rename the environment's scene with it: rename `{old_name}` to `{new_name}` first"
         )));
     }
-    let old = state.document_at(&old).and_then(Document::uri);
+    let old = view.document_at(&old).and_then(Document::uri);
     Ok(old.zip(uri_of(&new)))
 }
 
 /// The ranges that are edited together with the name at a position.
 pub(crate) fn linked_editing_ranges(
-    state: &State,
+    view: &View,
     params: &LinkedEditingRangeParams,
 ) -> Option<LinkedEditingRanges> {
-    let place = state.place(&params.text_document_position_params)?;
-    let spans = ide::linked_editing_ranges(state.database(), place.position());
-    let ranges: Vec<_> = spans.into_iter().map(|span| state.range(place.document, span)).collect();
+    let place = view.place(&params.text_document_position_params)?;
+    let spans = ide::linked_editing_ranges(view.database(), place.position());
+    let ranges: Vec<_> = spans.into_iter().map(|span| view.range(place.document, span)).collect();
     let word_pattern = Some(NAME_PATTERN.to_owned());
     (!ranges.is_empty()).then_some(LinkedEditingRanges { ranges, word_pattern })
 }

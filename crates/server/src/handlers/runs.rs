@@ -28,7 +28,7 @@ use tower_lsp::jsonrpc::{Error, ErrorCode, Result};
 use crate::children::{ChildEvent, Children, Running};
 use crate::chosen::ChosenEnvironment;
 use crate::handlers::scripts::{blocked, environment, failure};
-use crate::state::State;
+use crate::view::View;
 
 /// Runs an environment.
 pub(crate) const RUN: &str = "pydslrep.run";
@@ -65,9 +65,9 @@ pub(crate) struct Job {
 /// # Errors
 ///
 /// As [`copy`].
-pub(crate) fn prepare(state: &State, which: &ChosenEnvironment, command: &str) -> Result<Job> {
+pub(crate) fn prepare(view: &View, which: &ChosenEnvironment, command: &str) -> Result<Job> {
     let (subcommand, what) = if command == RUN { ("run", "driven") } else { ("plan", "planned") };
-    Ok(Job { copy: copy(state, which)?, environment: which.environment.clone(), subcommand, what })
+    Ok(Job { copy: copy(view, which)?, environment: which.environment.clone(), subcommand, what })
 }
 
 /// Writes the program and its imports.
@@ -75,20 +75,20 @@ pub(crate) fn prepare(state: &State, which: &ChosenEnvironment, command: &str) -
 /// # Errors
 ///
 /// If the environment does not exist or has errors, or the files cannot be written.
-fn copy(state: &State, which: &ChosenEnvironment) -> Result<ProgramCopy> {
-    let id = environment(state, which)?;
-    state.database().environment(id).map_err(|errors| blocked(state, &errors))?;
+fn copy(view: &View, which: &ChosenEnvironment) -> Result<ProgramCopy> {
+    let id = environment(view, which)?;
+    view.database().environment(id).map_err(|errors| blocked(view, &errors))?;
     let unwritten = |error: io::Error| failure(format!("cannot write the program to run: {error}"));
     let folder = TemporaryFolder::new("job-").map_err(unwritten)?;
-    let program = write_programs(state, which, folder.path())?;
+    let program = write_programs(view, which, folder.path())?;
     Ok(ProgramCopy { folder, program })
 }
 
 /// The open program and its imports, with the same relative paths.
-fn write_programs(state: &State, which: &ChosenEnvironment, folder: &Path) -> Result<PathBuf> {
+fn write_programs(view: &View, which: &ChosenEnvironment, folder: &Path) -> Result<PathBuf> {
     let unopened = || failure(format!("`{}` is not open in the editor", which.uri.as_str()));
-    let (document, file) = state.analysed(&which.uri).ok_or_else(unopened)?;
-    let database = state.database();
+    let (document, file) = view.analysed(&which.uri).ok_or_else(unopened)?;
+    let database = view.database();
     let own = database.path(file);
     let mut needed = vec![file];
     let mut next = 0;

@@ -29,6 +29,7 @@ use crate::chosen::ChosenEnvironment;
 use crate::documents::{Document, key, uri_of};
 use crate::message::Outbox;
 use crate::state::State;
+use crate::view::View;
 
 /// A line after the last of any script: the protocol clamps it to the document's end.
 const PAST_THE_END: u32 = 1 << 30;
@@ -114,8 +115,8 @@ pub(crate) struct ScriptText {
 }
 
 /// `pydslrep/script`.
-pub(crate) fn script(state: &State, which: &ChosenEnvironment) -> jsonrpc::Result<ScriptText> {
-    generate(state, which).map(|script| ScriptText { uri: script.uri, text: script.text })
+pub(crate) fn script(view: &View, which: &ChosenEnvironment) -> jsonrpc::Result<ScriptText> {
+    generate(view, which).map(|script| ScriptText { uri: script.uri, text: script.text })
 }
 
 /// Generates a script.
@@ -123,10 +124,10 @@ pub(crate) fn script(state: &State, which: &ChosenEnvironment) -> jsonrpc::Resul
 /// # Errors
 ///
 /// If the document is not open or was never saved, or the environment does not exist or has errors.
-pub(crate) fn generate(state: &State, which: &ChosenEnvironment) -> jsonrpc::Result<Script> {
-    let id = environment(state, which)?;
-    let program = state.document(&which.uri).and_then(Document::uri);
-    of_environment(state, program.as_ref().unwrap_or(&which.uri), id)
+pub(crate) fn generate(view: &View, which: &ChosenEnvironment) -> jsonrpc::Result<Script> {
+    let id = environment(view, which)?;
+    let program = view.document(&which.uri).and_then(Document::uri);
+    of_environment(view, program.as_ref().unwrap_or(&which.uri), id)
 }
 
 /// The chosen environment.
@@ -134,12 +135,12 @@ pub(crate) fn generate(state: &State, which: &ChosenEnvironment) -> jsonrpc::Res
 /// # Errors
 ///
 /// If the document is not open, or has no such environment.
-pub(crate) fn environment(state: &State, which: &ChosenEnvironment) -> jsonrpc::Result<EntityId> {
-    let (_, file) = state
+pub(crate) fn environment(view: &View, which: &ChosenEnvironment) -> jsonrpc::Result<EntityId> {
+    let (_, file) = view
         .analysed(&which.uri)
         .ok_or_else(|| failure(format!("`{}` is not open in the editor", which.uri.as_str())))?;
     let name = which.environment.as_str().into();
-    let declared = state.database().definitions(file, EntityKind::Environment, &name);
+    let declared = view.database().definitions(file, EntityKind::Environment, &name);
     let first = declared.first().copied();
     first.ok_or_else(|| failure(format!("there is no environment `{}`", which.environment)))
 }
@@ -149,36 +150,36 @@ pub(crate) fn environment(state: &State, which: &ChosenEnvironment) -> jsonrpc::
 /// # Errors
 ///
 /// If it has errors, or its program was never saved.
-pub(crate) fn of_environment(state: &State, program: &Uri, id: EntityId) -> jsonrpc::Result<Script> {
-    of_resolved(state, program, state.database().environment(id))
+pub(crate) fn of_environment(view: &View, program: &Uri, id: EntityId) -> jsonrpc::Result<Script> {
+    of_resolved(view, program, view.database().environment(id))
 }
 
 /// As [`of_environment`], of several environments of a program.
 pub(crate) fn of_environments(
-    state: &State,
+    view: &View,
     program: &Uri,
     ids: impl IntoIterator<Item = EntityId>,
 ) -> impl Iterator<Item = jsonrpc::Result<Script>> {
-    let environments = state.database().ready_environments(ids).into_iter();
-    environments.map(move |environment| of_resolved(state, program, environment))
+    let environments = view.database().ready_environments(ids).into_iter();
+    environments.map(move |environment| of_resolved(view, program, environment))
 }
 
 fn of_resolved(
-    state: &State,
+    view: &View,
     program: &Uri,
     environment: Result<Environment, Blocked>,
 ) -> jsonrpc::Result<Script> {
-    let environment = environment.map_err(|errors| blocked(state, &errors))?;
-    let settings = state.document(program).map(|document| document.settings.clone()).unwrap_or_default();
+    let environment = environment.map_err(|errors| blocked(view, &errors))?;
+    let settings = view.document(program).map(|document| document.settings.clone()).unwrap_or_default();
     let file_name = pydslrep_script::file_name(&environment);
-    let uri = match state.workspace.output_folder(&key(program)) {
+    let uri = match view.workspace.output_folder(&key(program)) {
         Some(folder) => uri_of(&format!("{folder}/{file_name}")),
         None => address(program, &file_name),
     };
     let uri = uri.ok_or_else(unsaved)?;
     let text = pydslrep_script::generate(&environment, settings.target, &program_name(program))
         .map_err(|error| failure(error.to_string()))?;
-    let provided = state.provided.clone();
+    let provided = view.provided.clone();
     let (depth, needs_runtime) = (settings.output_depth(), settings.write_runtime);
     Ok(Script { uri, text, depth, needs_runtime, provided })
 }
@@ -208,9 +209,9 @@ fn unsaved() -> Error {
 }
 
 /// Why an environment with errors is neither run nor translated.
-pub(crate) fn blocked(state: &State, blocked: &Blocked) -> Error {
+pub(crate) fn blocked(view: &View, blocked: &Blocked) -> Error {
     let first = blocked.errors.first();
-    let location = first.and_then(|error| state.location(error.file, error.span));
+    let location = first.and_then(|error| view.location(error.file, error.span));
     with_cause(blocked.reason(), &Cause::Errors { location })
 }
 
@@ -262,7 +263,7 @@ pub(crate) fn write_script(
     changed: Changed,
     outbox: &Outbox,
 ) -> jsonrpc::Result<(Uri, Option<oneshot::Receiver<()>>)> {
-    let script = generate(state, which)?;
+    let script = generate(&state.view, which)?;
     let path = path(&script.uri).ok_or_else(unsaved)?;
     script.write(&path, changed).map_err(failure)?;
     tell(outbox, MessageType::INFO, format!("Script written: {}", script.file_name()));
@@ -283,21 +284,22 @@ pub(crate) fn write_runtime(
     which: &ChosenEnvironment,
     outbox: &Outbox,
 ) -> jsonrpc::Result<Option<oneshot::Receiver<()>>> {
-    let folder = generate(state, which)?.runtime_folder();
+    let folder = generate(&state.view, which)?.runtime_folder();
     Ok(folder.map(|folder| state.runtimes.write(folder, outbox)))
 }
 
 /// Writes the scripts of all environments without errors, if that is set. Each script is reported once, and so is each
 /// that cannot be written: on every save would be too often.
 pub(crate) fn save(state: &mut State, program: &Uri, outbox: &Outbox) {
-    let Some((document, file)) = state.analysed(program) else { return };
-    if !document.settings.generate_on_save || state.provided.is_some() {
+    let view = &state.view;
+    let Some((document, file)) = view.analysed(program) else { return };
+    if !document.settings.generate_on_save || view.provided.is_some() {
         return;
     }
     let uri = document.uri().unwrap_or_else(|| program.clone());
-    let environments = state.database().environments(file);
+    let environments = view.database().environments(file);
     let ids = environments.into_iter().map(|(id, _)| id);
-    let scripts: Vec<Script> = of_environments(state, &uri, ids).flatten().collect();
+    let scripts: Vec<Script> = of_environments(view, &uri, ids).flatten().collect();
     let folders: BTreeSet<PathBuf> = scripts.iter().filter_map(Script::runtime_folder).collect();
     for script in scripts {
         let Some(path) = path(&script.uri) else { continue };
@@ -335,10 +337,10 @@ const KEEP: &str = "Keep It";
 ///
 /// As [`generate`].
 pub(crate) fn question(
-    state: &State,
+    view: &View,
     which: &ChosenEnvironment,
 ) -> jsonrpc::Result<Option<ShowMessageRequestParams>> {
-    let script = generate(state, which)?;
+    let script = generate(view, which)?;
     let is_changed = matches!(script.obstacle(), Some(WriteError::Changed(_)));
     let answer = |title: &str| MessageActionItem { title: title.to_owned(), properties: HashMap::new() };
     Ok(is_changed.then(|| ShowMessageRequestParams {

@@ -3,17 +3,17 @@
 use pydslrep_ide as ide;
 use tower_lsp::ls_types::{SelectionRange, SelectionRangeParams};
 
-use crate::state::State;
+use crate::view::View;
 
 /// The ranges to which a selection expands, from each position.
-pub(crate) fn selection_ranges(state: &State, params: &SelectionRangeParams) -> Option<Vec<SelectionRange>> {
-    let (document, file) = state.analysed(&params.text_document.uri)?;
+pub(crate) fn selection_ranges(view: &View, params: &SelectionRangeParams) -> Option<Vec<SelectionRange>> {
+    let (document, file) = view.analysed(&params.text_document.uri)?;
     let offsets: Vec<u32> =
-        params.positions.iter().map(|position| state.offset(document, *position)).collect();
-    let found = ide::selection_ranges(state.database(), file, &offsets);
+        params.positions.iter().map(|position| view.offset(document, *position)).collect();
+    let found = ide::selection_ranges(view.database(), file, &offsets);
     let nest = |spans: Vec<_>| {
         spans.into_iter().rev().fold(None, |parent, span| {
-            Some(SelectionRange { range: state.range(document, span), parent: parent.map(Box::new) })
+            Some(SelectionRange { range: view.range(document, span), parent: parent.map(Box::new) })
         })
     };
     Some(found.into_iter().filter_map(nest).collect())

@@ -13,9 +13,9 @@ use tower_lsp::ls_types::{
 };
 
 use crate::client::ClientFeatures;
-use crate::documents::{SentTokens, TokenCounts, key};
+use crate::documents::{KnownTokens, TokenCounts};
 use crate::positions::{Encoding, LineTable};
-use crate::state::State;
+use crate::view::View;
 use crate::work::Work;
 
 pub(crate) fn announce(server: &mut ServerCapabilities, _: &ClientFeatures) {
@@ -29,22 +29,22 @@ pub(crate) fn announce(server: &mut ServerCapabilities, _: &ClientFeatures) {
 }
 
 /// The tokens of a whole document.
-pub(crate) fn full(state: &mut State, params: &SemanticTokensParams) -> Option<Work<SemanticTokens>> {
+pub(crate) fn full(view: &View, params: &SemanticTokensParams) -> Option<Work<SemanticTokens>> {
     let uri = &params.text_document.uri;
-    let (result_id, counts) = remember(state, uri);
-    state.work(uri, |_, encoding| Box::new(move |snapshot| all(&snapshot, encoding, result_id, &counts)))
+    let (result_id, counts) = remember(view, uri);
+    view.work(uri, |_, encoding| Box::new(move |snapshot| all(&snapshot, encoding, result_id, &counts)))
 }
 
 /// Returns the changes since the tokens that the client has.
 pub(crate) fn delta(
-    state: &mut State,
+    view: &View,
     params: &SemanticTokensDeltaParams,
 ) -> Option<Work<SemanticTokensFullDeltaResult>> {
     let uri = &params.text_document.uri;
-    let before = state.clients.get_mut(&key(uri)).and_then(|client| client.tokens.take());
+    let before = view.document(uri).and_then(|document| document.memory().tokens.lock().last.take());
     let before = before.filter(|before| before.id == params.previous_result_id);
-    let (result_id, counts) = remember(state, uri);
-    state.work(uri, |_, encoding| {
+    let (result_id, counts) = remember(view, uri);
+    view.work(uri, |_, encoding| {
         Box::new(move |snapshot| {
             let known =
                 before.as_ref().and_then(|before| Some((&before.snapshot, before.counts.get()?.as_slice())));
@@ -57,18 +57,16 @@ pub(crate) fn delta(
 }
 
 /// Keeps the tokens that the client is about to get, if it supports deltas.
-fn remember(state: &mut State, uri: &Uri) -> (Option<String>, TokenCounts) {
+fn remember(view: &View, uri: &Uri) -> (Option<String>, TokenCounts) {
     let counts = TokenCounts::default();
-    if !state.client.token_deltas {
-        return (None, counts);
-    }
-    state.answers += 1;
-    let id = state.answers.to_string();
-    let snapshot = state.analysed(uri).and_then(|(_, file)| state.database().snapshot(file, None));
-    if let Some(snapshot) = snapshot {
-        let client = state.clients.entry(key(uri)).or_default();
-        client.tokens = Some(SentTokens { id: id.clone(), snapshot, counts: Arc::clone(&counts) });
-    }
+    let analysed = view.analysed(uri).filter(|_| view.client.token_deltas);
+    let Some((document, file)) = analysed else { return (None, counts) };
+    let Some(snapshot) = view.database().snapshot(file, None) else { return (None, counts) };
+    let memory = document.memory();
+    let mut tokens = memory.tokens.lock();
+    tokens.answers += 1;
+    let id = format!("{}-{}", document.opening(), tokens.answers);
+    tokens.last = Some(KnownTokens { id: id.clone(), snapshot, counts: Arc::clone(&counts) });
     (Some(id), counts)
 }
 
@@ -140,20 +138,16 @@ fn numbers(tokens: usize) -> u32 {
 }
 
 /// The tokens that touch a range: the visible part of the document.
-pub(crate) fn range(
-    state: &mut State,
-    params: &SemanticTokensRangeParams,
-) -> Option<SemanticTokensRangeResult> {
-    let state = &*state;
-    let (document, file) = state.analysed(&params.text_document.uri)?;
-    let span = state.span(document, params.range);
-    let snapshot = state.database().snapshot(file, Some(span))?;
+pub(crate) fn range(view: &View, params: &SemanticTokensRangeParams) -> Option<SemanticTokensRangeResult> {
+    let (document, file) = view.analysed(&params.text_document.uri)?;
+    let span = view.span(document, params.range);
+    let snapshot = view.database().snapshot(file, Some(span))?;
     let tokens = ide::semantic_tokens(&snapshot, Some(span));
     let (Some(first), Some(last)) = (tokens.first(), tokens.last()) else {
         return Some(SemanticTokens { result_id: None, data: Vec::new() }.into());
     };
     let covered = first.span.to(last.span);
-    let table = LineTable::of_part(document.text, covered, state.client.encoding);
+    let table = LineTable::of_part(document.text, covered, view.client.encoding);
     Some(SemanticTokens { result_id: None, data: encode(&table, Position::new(0, 0), &tokens) }.into())
 }
 
@@ -232,6 +226,7 @@ mod tests {
     };
 
     use super::*;
+    use crate::state::State;
 
     #[test]
     fn tokens_are_relative_to_the_one_before() {
@@ -269,7 +264,7 @@ mod tests {
 
     fn state(text: &str) -> State {
         let mut state = State::default();
-        state.client.token_deltas = true;
+        Arc::make_mut(&mut state.view.client).token_deltas = true;
         state.open(&TextDocumentItem::new(uri(), "pydslrep".to_owned(), 1, text.to_owned()));
         state
     }
@@ -279,24 +274,24 @@ mod tests {
     }
 
     fn edit(state: &mut State, start: u32, end: u32, text: &str) {
-        let (document, _) = state.analysed(&uri()).unwrap();
+        let (document, _) = state.view.analysed(&uri()).unwrap();
         let length = u32::try_from(document.text.len_bytes()).unwrap();
         let span = Span::new(start.min(length), end.min(length));
-        let range = Some(state.range(document, span));
+        let range = Some(state.view.range(document, span));
         let content_changes =
             vec![TextDocumentContentChangeEvent { range, range_length: None, text: text.to_owned() }];
         let text_document = VersionedTextDocumentIdentifier::new(uri(), 2);
         state.change(&DidChangeTextDocumentParams { text_document, content_changes });
     }
 
-    fn all_of(state: &mut State) -> SemanticTokens {
+    fn all_of(state: &State) -> SemanticTokens {
         let params = serde_json::from_value(serde_json::json!({ "textDocument": { "uri": uri() } })).unwrap();
-        done(full(state, &params).unwrap())
+        done(full(&state.view, &params).unwrap())
     }
 
-    fn changes_since(state: &mut State, id: &str) -> SemanticTokensFullDeltaResult {
+    fn changes_since(state: &State, id: &str) -> SemanticTokensFullDeltaResult {
         let params = serde_json::json!({ "textDocument": { "uri": uri() }, "previousResultId": id });
-        done(delta(state, &serde_json::from_value(params).unwrap()).unwrap())
+        done(delta(&state.view, &serde_json::from_value(params).unwrap()).unwrap())
     }
 
     fn done<R>(work: Work<R>) -> R {
@@ -317,36 +312,34 @@ mod tests {
 
     fn check_changes(edits: &[(u32, u32, &str)]) {
         let mut state = state(PROGRAM);
-        let SemanticTokens { result_id, mut data } = all_of(&mut state);
+        let SemanticTokens { result_id, mut data } = all_of(&state);
         let mut id = result_id.unwrap();
         for (start, end, text) in edits {
             edit(&mut state, *start, *end, text);
-            let change = changes_since(&mut state, &id);
+            let change = changes_since(&state, &id);
             let SemanticTokensFullDeltaResult::TokensDelta(change) = change else { panic!("{change:?}") };
             data = applied(data, &change.edits);
             id = change.result_id.unwrap();
-            let text = state.document(&uri()).unwrap().text.to_string();
-            let mut fresh = self::state(&text);
-            assert_eq!(data, all_of(&mut fresh).data, "{text}");
+            let text = state.view.document(&uri()).unwrap().text.to_string();
+            let fresh = self::state(&text);
+            assert_eq!(data, all_of(&fresh).data, "{text}");
         }
     }
 
     #[test]
     fn an_edit_sends_what_it_touches() {
         let mut state = state(PROGRAM);
-        let id = all_of(&mut state).result_id.unwrap();
+        let id = all_of(&state).result_id.unwrap();
         let at = u32::try_from(PROGRAM.find("4 meters").unwrap()).unwrap();
         edit(&mut state, at, at, "1");
-        let SemanticTokensFullDeltaResult::TokensDelta(change) = changes_since(&mut state, &id) else {
-            panic!()
-        };
+        let SemanticTokensFullDeltaResult::TokensDelta(change) = changes_since(&state, &id) else { panic!() };
         let [edit] = &change.edits[..] else { panic!("{change:?}") };
         // Of all the tokens, only those of the movement.
         assert_eq!((edit.start, edit.delete_count), (5 * 20, 5 * 10));
-        let again = changes_since(&mut state, change.result_id.as_deref().unwrap());
+        let again = changes_since(&state, change.result_id.as_deref().unwrap());
         let SemanticTokensFullDeltaResult::TokensDelta(nothing) = again else { panic!() };
         assert_eq!(nothing.edits, []);
-        let unknown = changes_since(&mut state, "7777");
+        let unknown = changes_since(&state, "7777");
         assert!(matches!(unknown, SemanticTokensFullDeltaResult::Tokens(_)));
     }
 

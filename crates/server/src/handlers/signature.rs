@@ -7,7 +7,7 @@ use tower_lsp::ls_types::{
 };
 
 use crate::client::ClientFeatures;
-use crate::state::State;
+use crate::view::View;
 
 pub(crate) fn announce(server: &mut ServerCapabilities, _: &ClientFeatures) {
     server.signature_help_provider = Some(SignatureHelpOptions {
@@ -17,13 +17,13 @@ pub(crate) fn announce(server: &mut ServerCapabilities, _: &ClientFeatures) {
 }
 
 /// The shape of the statement at a position.
-pub(crate) fn signature_help(state: &State, params: &SignatureHelpParams) -> Option<SignatureHelp> {
-    let place = state.place(&params.text_document_position_params)?;
+pub(crate) fn signature_help(view: &View, params: &SignatureHelpParams) -> Option<SignatureHelp> {
+    let place = view.place(&params.text_document_position_params)?;
     let trigger = trigger(params.context.as_ref())?;
-    let found = ide::signature_help(state.database(), place.position(), trigger)?;
+    let found = ide::signature_help(view.database(), place.position(), trigger)?;
     let current = found.signatures.get(found.active).and_then(|signature| signature.current);
     Some(SignatureHelp {
-        signatures: found.signatures.iter().map(|signature| convert(state, signature)).collect(),
+        signatures: found.signatures.iter().map(|signature| convert(view, signature)).collect(),
         active_signature: u32::try_from(found.active).ok(),
         active_parameter: Some(index(found.signatures.get(found.active)?, current)),
     })
@@ -40,10 +40,10 @@ fn trigger(context: Option<&SignatureHelpContext>) -> Option<ide::SignatureTrigg
 }
 
 /// Without documentation: it is a single line next to the one being typed.
-fn convert(state: &State, signature: &ide::Signature) -> SignatureInformation {
+fn convert(view: &View, signature: &ide::Signature) -> SignatureInformation {
     // Labels are ASCII: offsets are the same in every unit.
     let parameter = |span: &pydslrep_syntax::Span| ParameterInformation {
-        label: if state.client.label_offsets {
+        label: if view.client.label_offsets {
             ParameterLabel::LabelOffsets([span.start, span.end])
         } else {
             ParameterLabel::Simple(span.text(&signature.label).to_owned())

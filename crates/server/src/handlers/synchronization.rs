@@ -107,8 +107,8 @@ mod tests {
 
     /// The document's text; the database must have the same.
     fn text(state: &State) -> String {
-        let (document, file) = state.analysed(&uri()).unwrap();
-        assert_eq!(Some(document.text), state.database().text(file));
+        let (document, file) = state.view.analysed(&uri()).unwrap();
+        assert_eq!(Some(document.text), state.view.database().text(file));
         document.text.to_string()
     }
 
@@ -126,7 +126,7 @@ mod tests {
         assert_eq!(text(&state), "one two🤖!\r\né");
         assert!(change_text(&mut state, 3, &[(None, "new"), (Some([0, 3, 0, 0]), "er")]));
         assert_eq!(text(&state), "er", "a reversed range is understood");
-        assert_eq!(state.document(&uri()).unwrap().version(), Some(3));
+        assert_eq!(state.view.document(&uri()).unwrap().version(), Some(3));
     }
 
     #[test]

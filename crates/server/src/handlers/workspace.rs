@@ -15,12 +15,12 @@ use crate::documents::folders;
 use crate::handlers::settings;
 use crate::log::log;
 use crate::server::Server;
-use crate::state::State;
+use crate::view::View;
 
 /// Asks to be notified when files change, and settings.
-fn registrations(state: &State) -> Vec<Registration> {
+fn registrations(view: &View) -> Vec<Registration> {
     let mut wanted = Vec::new();
-    if state.client.watched_files {
+    if view.client.watched_files {
         let watch = |glob: String| FileSystemWatcher { glob_pattern: GlobPattern::String(glob), kind: None };
         let globs = [format!("**/*.{EXTENSION}"), format!("**/{FILE_NAME}"), format!("**/*{ENDING}")];
         let watchers = globs.map(watch).to_vec();
@@ -31,7 +31,7 @@ fn registrations(state: &State) -> Vec<Registration> {
             register_options: serde_json::to_value(options).ok(),
         });
     }
-    if state.client.registers_settings {
+    if view.client.registers_settings {
         wanted.push(Registration {
             id: "settings".to_owned(),
             method: DidChangeConfiguration::METHOD.to_owned(),
@@ -53,7 +53,7 @@ pub(crate) fn announce(server: &mut ServerCapabilities, _: &ClientFeatures) {
 pub(crate) async fn start(server: Server, _: InitializedParams) {
     let (registrations, folders) = {
         let state = server.state();
-        (registrations(&state), state.workspace.folders().to_vec())
+        (registrations(&state.view), state.view.workspace.folders().to_vec())
     };
     if !registrations.is_empty()
         && let Err(error) = server.client.register_capability(registrations).await
@@ -78,10 +78,10 @@ pub(crate) async fn folders_changed(server: Server, params: DidChangeWorkspaceFo
     let (removed, added) = (of(&params.event.removed), of(&params.event.added));
     {
         let mut state = server.state();
-        let mut now = state.workspace.folders().to_vec();
+        let mut now = state.view.workspace.folders().to_vec();
         now.retain(|folder| !removed.contains(folder));
         now.extend(added.iter().cloned());
-        state.workspace.set_folders(now);
+        state.workspace_mut().set_folders(now);
     }
     server.index(added).await;
 }
@@ -89,7 +89,7 @@ pub(crate) async fn folders_changed(server: Server, params: DidChangeWorkspaceFo
 /// `workspace/didChangeConfiguration`.
 pub(crate) async fn settings_changed(server: Server, params: DidChangeConfigurationParams) {
     // Clients that can be asked send nothing here, or not everything.
-    if server.state().client.settings {
+    if server.state().view.client.settings {
         server.ask_for_settings().await;
     } else {
         settings::set(&mut server.state(), &params.settings, &server.outbox);

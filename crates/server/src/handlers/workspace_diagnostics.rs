@@ -12,35 +12,37 @@ use tower_lsp::ls_types::{
 use crate::documents::{Document, key};
 use crate::handlers::diagnostics::{of_document, result_id};
 use crate::reader::Reader;
-use crate::state::State;
+use crate::server::Server;
+use crate::view::View;
 
 /// Returns the diagnostics that have changed since the client last asked; waits until some have.
 pub(crate) async fn pull_workspace(
-    mut reader: Reader,
+    server: Server,
     params: WorkspaceDiagnosticParams,
 ) -> Result<WorkspaceDiagnosticReportResult> {
+    let mut reader = Reader::new(server);
     let known: FxHashMap<String, &str> =
         params.previous_result_ids.iter().map(|known| (key(&known.uri), known.value.as_str())).collect();
     loop {
         let change = reader.diagnostics_change();
         let mut items = Vec::new();
         let keys: Vec<String> = {
-            let state = reader.state();
-            let keys = state.workspace.documents().map(|document| document.key.as_str());
+            let view = reader.view();
+            let keys = view.workspace.documents().map(|document| document.key.as_str());
             Workspace::in_order(keys).into_iter().map(str::to_owned).collect()
         };
         for key in keys {
             let length = {
-                let state = reader.state();
-                let Some(document) = state.document_at(&key) else { continue };
-                items.extend(changed_report(&state, document, known.get(&key).copied()));
+                let view = reader.view();
+                let Some(document) = view.document_at(&key) else { continue };
+                items.extend(changed_report(&view, document, known.get(&key).copied()));
                 document.text.len_bytes()
             };
             reader.has_read(length).await;
         }
         {
-            let state = reader.state();
-            let gone = params.previous_result_ids.iter().filter(|known| state.document(&known.uri).is_none());
+            let view = reader.view();
+            let gone = params.previous_result_ids.iter().filter(|known| view.document(&known.uri).is_none());
             items.extend(gone.map(|known| full_report(known.uri.clone(), None, None, Vec::new())));
         }
         // After an empty answer clients send the request again at once.
@@ -52,11 +54,11 @@ pub(crate) async fn pull_workspace(
 }
 
 fn changed_report(
-    state: &State,
+    view: &View,
     document: Document<'_>,
     known: Option<&str>,
 ) -> Option<WorkspaceDocumentDiagnosticReport> {
-    let found = of_document(state, document);
+    let found = of_document(view, document);
     let id = result_id(&found, document.opening());
     if known == Some(id.as_str()) {
         return None;

@@ -12,11 +12,12 @@ use tower_lsp::ls_types::request::Request;
 use tower_lsp::ls_types::{TextDocumentIdentifier, Uri};
 
 use super::*;
-use crate::dispatch::{Announce, Table};
+use crate::dispatch::{Table, change, read, run};
 use crate::handlers;
 use crate::reader::yield_now;
 use crate::server::Server;
 use crate::state::State;
+use crate::view::View;
 
 const DOCUMENT: &str = "file:///tmp/a.pyr";
 
@@ -29,8 +30,8 @@ impl Request for TestText {
     const METHOD: &'static str = "test/text";
 }
 
-fn text(state: &State, document: &TextDocumentIdentifier) -> Option<String> {
-    let analysed = state.analysed(&document.uri).and_then(|(_, file)| state.database().text(file));
+fn text(view: &View, document: &TextDocumentIdentifier) -> Option<String> {
+    let analysed = view.analysed(&document.uri).and_then(|(_, file)| view.database().text(file));
     analysed.map(ToString::to_string)
 }
 
@@ -66,8 +67,8 @@ impl Request for TestForever {
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "what handlers look like")]
-fn panic_now(state: &mut State, (): &()) -> Option<()> {
-    state.workspace.update(|database| *database = Database::new());
+fn panic_now(state: &mut State, (): &()) {
+    state.workspace_mut().update(|database| *database = Database::new());
     panic!("on purpose");
 }
 
@@ -78,13 +79,12 @@ async fn panic_later(_: Server, (): ()) -> jsonrpc::Result<()> {
 
 /// All methods, and some that only tests need.
 fn table() -> Table {
-    const NOTHING: Announce = |_, _| {};
     let mut table = handlers::table();
-    table.read::<TestText, _>(text, NOTHING);
-    table.read_and_note::<TestPanic, _>(panic_now, NOTHING);
-    table.run::<TestPanicLater, _>(panic_later, NOTHING);
-    table.change::<TestPanicNotified>(|_, (), _| panic!("on purpose"), NOTHING);
-    table.run::<TestForever, _>(|_, ()| std::future::pending(), NOTHING);
+    table.add(read::<TestText, _>(text));
+    table.add(read::<TestPanic, _>(|_, ()| None).noting(panic_now));
+    table.add(run::<TestPanicLater, _>(panic_later));
+    table.add(change::<TestPanicNotified>(|_, (), _| panic!("on purpose")));
+    table.add(run::<TestForever, _>(|_, ()| std::future::pending()));
     table
 }
 

@@ -14,7 +14,7 @@ const MAX_ENTRIES: usize = 100_000;
 /// Adds all programs and scenes of folders to the workspace; returns a summary. To be run on a thread of its own
 /// where there is a disk: each file is read without holding the state, and messages are handled in between.
 pub(super) fn index(server: &Server, folders: &[String]) -> String {
-    let files = server.state().workspace.files();
+    let files = server.state().view.workspace.files();
     let (mut programs, mut is_incomplete) = (0, false);
     for folder in folders {
         let listing = files.list(&path_of(folder), MAX_ENTRIES);
@@ -23,11 +23,11 @@ pub(super) fn index(server: &Server, folders: &[String]) -> String {
             log(format_args!("cannot read the folder {error}"));
         }
         // A folder inside another may be ignored there.
-        let is_open = server.state().workspace.folders().contains(folder);
+        let is_open = server.state().view.workspace.folders().contains(folder);
         // Programs first: in a large workspace, scenes without one wait until they are opened.
         for path in listing.programs.into_iter().chain(listing.scenes) {
             let key = key_of(&path);
-            if !is_open && !server.state().workspace.is_listed(&key) {
+            if !is_open && !server.state().view.workspace.is_listed(&key) {
                 continue;
             }
             if programs == MAX_PROGRAMS {
@@ -36,7 +36,7 @@ pub(super) fn index(server: &Server, folders: &[String]) -> String {
             }
             match files.read(&path) {
                 Ok(text) => {
-                    server.state().workspace.add(&key, &text);
+                    server.state().workspace_mut().add(&key, &text);
                     let is_program = DocumentKind::of_document(&key) == DocumentKind::Program;
                     programs += usize::from(is_program);
                 }

@@ -9,7 +9,7 @@ use tower_lsp::ls_types::{
 
 use super::{sentence, workspace_edit};
 use crate::documents::Document;
-use crate::state::State;
+use crate::view::View;
 
 /// The problems to fix: the data of an action until it is chosen, because computing the edits means trying them.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -24,13 +24,13 @@ pub(crate) struct FixAllOf {
 /// Every refactoring that applies to the selection; if the client shows them, also those that cannot be done, with the
 /// reason.
 pub(super) fn refactorings(
-    state: &State,
+    view: &View,
     document: Document<'_>,
     file: FileId,
     params: &CodeActionParams,
     wanted: impl Fn(&CodeActionKind) -> bool,
 ) -> Vec<CodeActionOrCommand> {
-    let offers = ide::refactorings(state.database(), file, state.span(document, params.range));
+    let offers = ide::refactorings(view.database(), file, view.span(document, params.range));
     let action = |offer: ide::Refactoring| {
         let kind = kind(offer.kind);
         if !wanted(&kind) {
@@ -38,8 +38,8 @@ pub(super) fn refactorings(
         }
         let action = CodeAction { title: sentence(&offer.title), kind: Some(kind), ..CodeAction::default() };
         Some(match offer.edits {
-            Ok(edits) => CodeAction { edit: Some(workspace_edit(state, &edits)), ..action },
-            Err(reason) if state.client.disabled_actions => {
+            Ok(edits) => CodeAction { edit: Some(workspace_edit(view, &edits)), ..action },
+            Err(reason) if view.client.disabled_actions => {
                 CodeAction { disabled: Some(CodeActionDisabled { reason }), ..action }
             }
             Err(_) => return None,
@@ -58,27 +58,27 @@ fn kind(kind: ide::RefactoringKind) -> CodeActionKind {
 
 /// "Fix all … problems" for each code in the range that occurs more than once.
 pub(super) fn fix_all_of_a_code(
-    state: &State,
+    view: &View,
     document: Document<'_>,
     file: FileId,
     params: &CodeActionParams,
 ) -> Vec<CodeActionOrCommand> {
-    let range = state.span(document, params.range);
-    let mut shown = shown(state.database(), document, file);
+    let range = view.span(document, params.range);
+    let mut shown = shown(view.database(), document, file);
     shown.retain(|problem| problem.span.start <= range.end && range.start <= problem.span.end);
-    let codes = ide::codes_to_fix_all(state.database(), file, &shown).into_iter();
+    let codes = ide::codes_to_fix_all(view.database(), file, &shown).into_iter();
     let action = |code: &str| {
         let title = format!("Fix all `{code}` problems");
-        offer(state, document, title, CodeActionKind::QUICKFIX, Some(code))
+        offer(view, document, title, CodeActionKind::QUICKFIX, Some(code))
     };
     codes.filter_map(action).collect()
 }
 
 /// `source.fixAll`, where there is anything to fix.
-pub(super) fn fix_all(state: &State, document: Document<'_>, file: FileId) -> Option<CodeActionOrCommand> {
-    let any = shown(state.database(), document, file).iter().any(ide::has_safe_fix);
+pub(super) fn fix_all(view: &View, document: Document<'_>, file: FileId) -> Option<CodeActionOrCommand> {
+    let any = shown(view.database(), document, file).iter().any(ide::has_safe_fix);
     let title = "Apply all safe fixes".to_owned();
-    any.then(|| offer(state, document, title, CodeActionKind::SOURCE_FIX_ALL, None))?
+    any.then(|| offer(view, document, title, CodeActionKind::SOURCE_FIX_ALL, None))?
 }
 
 /// The problems that are not switched off.
@@ -93,7 +93,7 @@ fn is_shown(document: Document<'_>, problem: &Diagnostic) -> bool {
 }
 
 fn offer(
-    state: &State,
+    view: &View,
     document: Document<'_>,
     title: String,
     kind: CodeActionKind,
@@ -101,17 +101,17 @@ fn offer(
 ) -> Option<CodeActionOrCommand> {
     let action = CodeAction { title, kind: Some(kind), ..CodeAction::default() };
     let which = FixAllOf { uri: document.uri()?, fix_all: code.map(str::to_owned) };
-    if state.client.resolve_edits {
+    if view.client.resolve_edits {
         return Some(CodeAction { data: serde_json::to_value(which).ok(), ..action }.into());
     }
-    Some(CodeAction { edit: Some(workspace_edit(state, &edits(state, &which))), ..action }.into())
+    Some(CodeAction { edit: Some(workspace_edit(view, &edits(view, &which))), ..action }.into())
 }
 
 /// The edits of these fixes, in the current text.
-pub(super) fn edits(state: &State, which: &FixAllOf) -> Vec<Edit> {
-    let Some((document, file)) = state.analysed(&which.uri) else { return Vec::new() };
+pub(super) fn edits(view: &View, which: &FixAllOf) -> Vec<Edit> {
+    let Some((document, file)) = view.analysed(&which.uri) else { return Vec::new() };
     let is_meant = |problem: &Diagnostic| {
         is_shown(document, problem) && which.fix_all.as_ref().is_none_or(|code| code == problem.code())
     };
-    ide::fix_all(state.database(), file, is_meant)
+    ide::fix_all(view.database(), file, is_meant)
 }

@@ -119,7 +119,7 @@ pub(super) async fn follow(
 
 /// The token of a child's progress: the client's, otherwise one of ours; `None` where the client shows none.
 async fn progress_token(server: &Server, asked: Option<ProgressToken>) -> Option<ProgressToken> {
-    if asked.is_some() || !server.state().client.progress {
+    if asked.is_some() || !server.state().view.client.progress {
         return asked;
     }
     let token = ProgressToken::String(format!("pydslrep run {}", server.children().count()));

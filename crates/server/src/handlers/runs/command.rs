@@ -17,7 +17,7 @@ pub(crate) async fn run(
     params: ExecuteCommandParams,
     which: ChosenEnvironment,
 ) -> Result<Option<LSPAny>> {
-    let job = runs::prepare(&server.state(), &which, &params.command)?;
+    let job = runs::prepare(&server.state().view, &which, &params.command)?;
     let (running, events, picture) = job.start(&mut server.children())?;
     let is_run = params.command == runs::RUN;
     let title = format!("{} {}", if is_run { "Running" } else { "Planning" }, which.environment);
@@ -27,8 +27,8 @@ pub(crate) async fn run(
         follow(&server, token, title, tells, (running, events)).await;
     if is_run {
         // The path up to a failure is worth showing too.
-        let State { driven, pages, .. } = &mut *server.state();
-        driven.add(&which, &runs::trace(&picture), &runs::map(&picture), &server.outbox, pages);
+        let State { view, pages, .. } = &*server.state();
+        view.driven.add(&which, &runs::trace(&picture), &runs::map(&picture), &server.outbox, pages);
     }
     // The plan of one environment is drawn even if others have errors; the exit code reports those.
     let is_drawn = || std::fs::metadata(&picture).is_ok_and(|file| file.len() > 0);
@@ -38,7 +38,7 @@ pub(crate) async fn run(
         let _ = std::fs::remove_file(&picture);
         let _ = std::fs::remove_file(runs::replay(&picture));
         let error = match &report.failure {
-            Some(failure) => failed_run::error(&server.state(), &which, failure, &stderr),
+            Some(failure) => failed_run::error(&server.state().view, &which, failure, &stderr),
             None => runs::ended_badly(code, &stderr),
         };
         return Err(error);
@@ -46,7 +46,7 @@ pub(crate) async fn run(
     let output = if is_run { report.table } else { printed };
     let replay = Uri::from_file_path(runs::replay(&picture));
     let picture = Uri::from_file_path(&picture);
-    let shows_documents = server.state().client.show_document;
+    let shows_documents = server.state().view.client.show_document;
     if let (Some(uri), true) = (&picture, shows_documents) {
         let show = ShowDocumentParams {
             uri: uri.clone(),

@@ -187,8 +187,8 @@ impl Child<'_> {
     ) -> Result<(String, Ended)> {
         let (copy, address) = {
             let state = server.state();
-            let copy = copy(&state, which)?;
-            let settings = state.document(&which.uri).map(|document| document.settings.clone());
+            let copy = copy(&state.view, which)?;
+            let settings = state.view.document(&which.uri).map(|document| document.settings.clone());
             (copy, settings.unwrap_or_default().coppeliasim.clone())
         };
         let started = {
