@@ -8,8 +8,8 @@ use crate::path::RobotPath;
 use crate::walk::Walk;
 use crate::{Action, Model, Movement, Pose, Step, Summary};
 
-/// The most actions that a plan lists.
-pub const MOST_ACTIONS: u64 = 100_000;
+/// The maximum number of actions that a plan lists.
+pub const MAX_ACTIONS: u64 = 100_000;
 
 /// One movement of one robot within a schedule: actions without statements around them.
 #[derive(Debug, Clone, PartialEq)]
@@ -86,7 +86,7 @@ pub fn plan_steps(model: &Model, start: Pose, steps: &[Step], called: &[Vec<Step
     let called: Vec<(usize, &[Step])> = called.iter().map(|steps| (0, steps.as_slice())).collect();
     let blocks = blocks(&called, &[model]);
     let block = Block::new(model, steps, &|other| blocks.get(other).map(|block| block.summary));
-    let mut walk = Walk::new(&blocks, RobotPath::new(start), MOST_ACTIONS);
+    let mut walk = Walk::new(&blocks, RobotPath::new(start), MAX_ACTIONS);
     walk.run(&block, 0, 0, Some(0.0));
     walk.into_path()
 }
@@ -99,7 +99,7 @@ pub fn plan_step(
     called: &dyn Fn(usize) -> Option<Summary>,
 ) -> RobotPath {
     let block = Block::new(model, &[step], called);
-    let mut walk = Walk::new(&[], RobotPath::new(start), MOST_ACTIONS);
+    let mut walk = Walk::new(&[], RobotPath::new(start), MAX_ACTIONS);
     walk.run(&block, 0, 0, Some(0.0));
     walk.into_path()
 }
@@ -126,7 +126,7 @@ pub fn plan(robots: &[RobotPlan], schedule: &[Vec<Run>]) -> Result<Plan, PlanErr
 /// others call is listed before them.
 ///
 /// It takes as long as the movements and what is listed of them are, however often they are repeated: at most
-/// [`MOST_ACTIONS`] legs, all robots together. Poses and times at the end are right nevertheless.
+/// [`MAX_ACTIONS`] legs, all robots together. Poses and times at the end are right nevertheless.
 ///
 /// # Errors
 /// When the schedule names a movement that is not there, or one of a robot that is not there.
@@ -187,7 +187,7 @@ fn blocks(movements: &[(usize, &[Step])], models: &[&Model]) -> Vec<Block> {
 fn shares(wanted: &[u64]) -> Vec<u64> {
     let mut order: Vec<usize> = (0..wanted.len()).collect();
     order.sort_by_key(|&robot| wanted[robot]);
-    let (mut shares, mut left) = (vec![0; wanted.len()], MOST_ACTIONS);
+    let (mut shares, mut left) = (vec![0; wanted.len()], MAX_ACTIONS);
     for (robot, robots) in order.into_iter().zip((1..=wanted.len() as u64).rev()) {
         shares[robot] = wanted[robot].min(left / robots);
         left -= shares[robot];

@@ -6,12 +6,12 @@ use crate::leg::{ActionIndex, Call, Leg, Place};
 use crate::path::RobotPath;
 use crate::summary::Summary;
 
-/// Calls inside so many calls are listed as one entry. Each entry says by which calls it is reached; without an end to them,
+/// Calls nested deeper are listed as one entry. Each entry names the calls around it; without a limit,
 /// a list of moderate length would not fit into memory.
-pub(crate) const MOST_CALLS: usize = 32;
+pub(crate) const MAX_CALL_DEPTH: usize = 32;
 
-/// The most legs of what is possible after the last known pose.
-const MOST_POSSIBLE: u64 = 1_000;
+/// The maximum number of possible legs listed after the last known pose.
+const MAX_POSSIBLE_LEGS: u64 = 1_000;
 
 /// A walk along the steps of one robot.
 pub(crate) struct Walk<'p> {
@@ -120,7 +120,7 @@ impl<'p> Walk<'p> {
             }
             NodeKind::Branch { ways } => self.whole(node, Some(Possible::Ways(ways))),
             NodeKind::Call { movement } => match self.blocks.get(*movement) {
-                Some(block) if self.calls.len() < MOST_CALLS => {
+                Some(block) if self.calls.len() < MAX_CALL_DEPTH => {
                     self.calls.push(Call { action: node.number, movement: *movement });
                     self.enter(block, Entered::Call);
                 }
@@ -221,7 +221,7 @@ impl<'p> Walk<'p> {
 
     /// Each way up to its own first unknown statement, and that one to its bound.
     fn ways(&self, ways: &'p [Block]) -> Vec<Vec<Leg>> {
-        let mut left = MOST_POSSIBLE;
+        let mut left = MAX_POSSIBLE_LEGS;
         let mut found = Vec::new();
         for way in ways {
             let mut walk = Walk {
@@ -264,7 +264,7 @@ mod tests {
         arc, call, either, forward, left, numbered, repeat, slam, step, turn, two_wheels, until, wait,
     };
     use crate::{
-        Action, LegKind, MOST_ACTIONS, Movement, Plan, Pose, RobotPlan, Step, StepKind, plan_movement,
+        Action, LegKind, MAX_ACTIONS, Movement, Plan, Pose, RobotPlan, Step, StepKind, plan_movement,
         plan_schedule, plan_step, plan_steps,
     };
 
@@ -367,8 +367,8 @@ mod tests {
         let chain = deep(5_000, 1);
         assert!((chain.end().x - 5_001.0).abs() < 1e-6 && !chain.truncated);
         let last = chain.legs.last().unwrap();
-        assert_eq!((chain.legs.len(), last.kind), (MOST_CALLS + 1, LegKind::Whole));
-        assert_eq!(last.place.calls().len(), MOST_CALLS);
+        assert_eq!((chain.legs.len(), last.kind), (MAX_CALL_DEPTH + 1, LegKind::Whole));
+        assert_eq!(last.place.calls().len(), MAX_CALL_DEPTH);
         let doubled = deep(40, 2);
         assert!((doubled.end().x / (2_f64.powi(41) - 1.0) - 1.0).abs() < 1e-12 && doubled.truncated);
     }
@@ -377,7 +377,7 @@ mod tests {
     fn a_million_million_rounds_are_listed_up_to_a_limit() {
         let rounds = |body| vec![repeat(10_000, vec![repeat(10_000, vec![repeat(10_000, body)])])];
         let long = path(rounds(vec![forward(1.0)]));
-        assert_eq!((long.legs.len() as u64, long.truncated), (MOST_ACTIONS, true));
+        assert_eq!((long.legs.len() as u64, long.truncated), (MAX_ACTIONS, true));
         assert!((long.end().x / 1e12 - 1.0).abs() < 1e-9 && long.unknown_after.is_none());
         assert_eq!(long.legs[99_999].place.rounds(), [1, 10, 10_000]);
         assert_eq!(path(rounds(vec![])), path(vec![]));

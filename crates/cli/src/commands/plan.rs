@@ -9,7 +9,7 @@ use pydslrep_analysis::environment::Environment;
 use pydslrep_config::{Config, Edition};
 use pydslrep_kinematics::{ActionIndex, Leg, Place, Pose, RobotPath};
 use pydslrep_output::{Kind, check_outputs, write_output};
-use pydslrep_scene::{Collision, Scene, Thing, collisions, mjcf};
+use pydslrep_scene::{Collision, Scene, SceneObject, collisions, mjcf};
 use serde::Serialize;
 
 use crate::failure::Failure;
@@ -111,7 +111,7 @@ const HEAD: [&str; 6] = ["action", "at s", "x m", "y m", "heading °", "wheels r
 const GAP: usize = 2;
 
 /// A narrower column is hard to read.
-const FEWEST_COLUMNS: usize = 16;
+const MIN_COLUMNS: usize = 16;
 
 /// Actions that begin within this many seconds of each other begin together.
 const AT_ONCE: f64 = 0.005;
@@ -132,8 +132,8 @@ fn table(planned: &Planned) -> String {
     let last = HEAD.len() - 1;
     let left = |others: usize| output::columns().saturating_sub(others + 1);
     // On a narrow terminal, wheel rates are below their action.
-    let is_narrow = left(others) < FEWEST_COLUMNS;
-    let columns = if is_narrow { left(others - width(last)) } else { left(others) }.max(FEWEST_COLUMNS);
+    let is_narrow = left(others) < MIN_COLUMNS;
+    let columns = if is_narrow { left(others - width(last)) } else { left(others) }.max(MIN_COLUMNS);
     let mut table = output::table(HEAD);
     table.set_content_arrangement(ContentArrangement::Disabled);
     for [what, at, x, y, heading, rates] in rows {
@@ -212,16 +212,16 @@ fn meeting(planned: &Planned, collision: &Collision) -> String {
     });
     format!(
         "{} runs into `{}`{doing}{time}: `{action}` of `{movement}`, at x {x} m, y {y} m",
-        thing(&planned.scene, Thing::Robot(collision.robot)),
-        thing(&planned.scene, collision.with),
+        object_name(&planned.scene, SceneObject::Robot(collision.robot)),
+        object_name(&planned.scene, collision.with),
     )
 }
 
 /// The name of an obstacle or a robot.
-fn thing(scene: &Scene, thing: Thing) -> &str {
-    match thing {
-        Thing::Obstacle(index) => scene.obstacles.get(index).map_or("", |obstacle| &obstacle.name),
-        Thing::Robot(index) => scene.robots.get(index).map_or("", |robot| &robot.name),
+fn object_name(scene: &Scene, object: SceneObject) -> &str {
+    match object {
+        SceneObject::Obstacle(index) => scene.obstacles.get(index).map_or("", |obstacle| &obstacle.name),
+        SceneObject::Robot(index) => scene.robots.get(index).map_or("", |robot| &robot.name),
     }
 }
 
@@ -248,13 +248,13 @@ struct JsonCollision<'a> {
     x: f64,
     y: f64,
     theta: f64,
-    with: JsonThing<'a>,
+    with: JsonCollisionTarget<'a>,
 }
 
-/// The other side of a collision.
+/// The obstacle or robot that a robot collides with.
 #[derive(Serialize)]
 #[serde(rename_all = "snake_case")]
-enum JsonThing<'a> {
+enum JsonCollisionTarget<'a> {
     Obstacle(&'a str),
     Robot(&'a str),
 }
@@ -341,14 +341,14 @@ fn json_plan(planned: &Planned) -> JsonPlan<'_> {
 }
 
 fn json_collision<'a>(planned: &'a Planned, collision: &Collision) -> JsonCollision<'a> {
-    let name = thing(&planned.scene, collision.with);
+    let name = object_name(&planned.scene, collision.with);
     let with = match collision.with {
-        Thing::Obstacle(_) => JsonThing::Obstacle(name),
-        Thing::Robot(_) => JsonThing::Robot(name),
+        SceneObject::Obstacle(_) => JsonCollisionTarget::Obstacle(name),
+        SceneObject::Robot(_) => JsonCollisionTarget::Robot(name),
     };
     let Pose { x, y, theta } = collision.pose;
     let action = json_action(planned, collision.action, &collision.place);
-    let robot = thing(&planned.scene, Thing::Robot(collision.robot));
+    let robot = object_name(&planned.scene, SceneObject::Robot(collision.robot));
     JsonCollision { robot, action, t: collision.time, x, y, theta, with }
 }
 

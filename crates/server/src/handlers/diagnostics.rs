@@ -104,7 +104,7 @@ pub(crate) fn has_many(state: &State, params: &DocumentDiagnosticParams) -> Opti
     /// Entities with problems; one takes a few microseconds.
     const MANY: usize = 500;
     let document = state.document(&params.text_document.uri)?;
-    (state.database().count_troubled(document.file?) > MANY).then(|| document.key.to_owned())
+    (state.database().count_with_problems(document.file?) > MANY).then(|| document.key.to_owned())
 }
 
 /// `textDocument/diagnostic`. The result's id depends on the diagnostics and on when the document was opened, not on its

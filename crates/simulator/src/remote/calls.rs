@@ -355,7 +355,7 @@ impl CallContext<'_> {
             distance: seen.distance,
             // Scaled to the measured distance.
             point: way.try_normalize(f64::MIN_POSITIVE).map_or(way, |way| way * seen.distance),
-            handle: self.objects.handle_of(seen.what).unwrap_or(-1),
+            handle: self.objects.handle_of(seen.object).unwrap_or(-1),
             normal: frame.inverse_transform_vector(&Vector3::new(seen.normal.0, seen.normal.1, 0.0)),
         })
     }

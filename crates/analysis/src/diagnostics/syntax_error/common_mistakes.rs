@@ -450,7 +450,7 @@ fn foreign_action(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> 
         return None;
     }
     let problem = RULE.problem(place.span, format!("there is no action `{found}`"));
-    let meant = match found.to_lowercase().as_str() {
+    let keyword = match found.to_lowercase().as_str() {
         "go" | "drive" | "forward" | "walk" | "run" | "advance" => "move",
         "rotate" | "spin" | "rotation" => "turn",
         "sleep" | "pause" => "wait",
@@ -469,10 +469,10 @@ fn foreign_action(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> 
         "else" => return Some(problem.help("`else` follows the block of an `if`")),
         _ => return None,
     };
-    let edit = place.context.replace(place.span, meant);
-    let problem = problem.help(format!("did you mean `{meant}`?"));
+    let edit = place.context.replace(place.span, keyword);
+    let problem = problem.help(format!("did you mean `{keyword}`?"));
     let fixed = repair::is_fixed(place.context, std::slice::from_ref(&edit));
-    Some(if fixed { problem.suggestion(format!("change to `{meant}`"), [edit]) } else { problem })
+    Some(if fixed { problem.suggestion(format!("change to `{keyword}`"), [edit]) } else { problem })
 }
 
 /// `sensor s, t`

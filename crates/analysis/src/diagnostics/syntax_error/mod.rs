@@ -1,7 +1,8 @@
 //! `syntax-error`: the text does not follow the grammar.
 //!
-//! [`words`] holds how what was expected is said, [`common_mistakes`] what people bring along from elsewhere, [`rewrite`] whole
-//! statements of that sort, [`glued`] words without a blank between them, [`repair`] how a fix is found: by trying what could be one.
+//! [`words`] has the phrases for what was expected; [`common_mistakes`] recognises habits from other languages, and [`rewrite`]
+//! whole statements in their syntax; [`glued`] separates words without a blank between them; [`repair`] finds fixes by trying
+//! candidates.
 
 mod common_mistakes;
 mod glued;
@@ -13,7 +14,7 @@ use pydslrep_syntax::ast::{Entity, Name};
 use pydslrep_syntax::{EntityKind, Expected, Found, Span, SyntaxError, SyntaxErrorKind, TokenKind};
 
 pub(super) use self::rewrite::{Rewrite, find as rewrites};
-use self::words::{listed, shape, telling};
+use self::words::{listed, shape, worth_listing};
 use super::context::Context;
 use super::problem::{Brace, Problem, Renaming};
 use super::{Applicability, Page, Rule};
@@ -100,7 +101,7 @@ fn misspelt(context: &Context<'_>, span: Span, written: &str, keyword: TokenKind
     }
 }
 
-/// `None` where it refers to a declaration that has the same mistake: there it is reported, for all uses.
+/// `None` for a reference to a declaration that has the same mistake: the declaration's problem stands for all its uses.
 fn keyword_as_name(context: &Context<'_>, span: Span, written: &str, of: EntityKind) -> Option<Problem> {
     let message = format!("`{written}` is a word of the language, so {} cannot be called that", of.a_noun());
     let help = format!("write `^{written}` to use it as a name, or choose another name");
@@ -128,7 +129,7 @@ fn is_bare(name: &Name) -> bool {
     name.span.len() as usize == name.text.len()
 }
 
-/// A name that says what it is called now and what it is, and that nobody of the kind has.
+/// A name made of the current one and the kind, such as `left_sensor`, that no other declaration of the kind has.
 fn free_name(context: &Context<'_>, kind: EntityKind, written: &str) -> String {
     let stem =
         if written == kind.noun() { format!("{written}_1") } else { format!("{written}_{}", kind.noun()) };
@@ -158,7 +159,7 @@ fn missing(
     inside: Option<EntityKind>,
 ) -> Problem {
     let all = expected;
-    let expected = telling(expected);
+    let expected = worth_listing(expected);
     let closes = matches!(expected[..], [Expected::Word(TokenKind::CloseBrace)]);
     let before =
         context.tokens.iter().rev().find(|(token, other)| !token.is_comment() && other.end <= span.start);
@@ -171,7 +172,7 @@ fn missing(
     let clause = clause(&expected, found, inside);
     let what = clause.map_or_else(|| listed(&expected), |(what, _)| what.to_owned());
     let mut problem = RULE.problem(span, format!("missing {what}{place}"));
-    let braces = before.and_then(|(token, _)| words::after(*token, &expected));
+    let braces = before.and_then(|(token, _)| words::missing_braces(*token, &expected));
     if let Some(shape) = braces.map(str::to_owned).or_else(|| shape(context, inside, &expected)) {
         problem = problem.help(shape);
     }
@@ -224,7 +225,7 @@ fn unexpected(
     inside: Option<EntityKind>,
 ) -> Problem {
     let all = expected;
-    let expected = telling(expected);
+    let expected = worth_listing(expected);
     if repair::is_doubled(context, span) {
         let problem = RULE.problem(span, format!("`{found}` is written twice"));
         return problem.fix(format!("remove the second `{found}`"), [context.remove(span)]);
