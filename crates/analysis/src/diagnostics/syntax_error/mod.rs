@@ -90,7 +90,7 @@ fn misspelt(context: &Context<'_>, span: Span, written: &str, keyword: TokenKind
     } else if written.eq_ignore_ascii_case(word) {
         format!("small and capital letters count as different: this word is written `{word}`")
     } else {
-        format!("`{written}` is not a word of the language; did you mean `{word}`?")
+        format!("`{written}` is not a keyword; did you mean `{word}`?")
     };
     let problem = RULE.problem(span, message);
     let edit = context.replace(span, word);
@@ -103,7 +103,7 @@ fn misspelt(context: &Context<'_>, span: Span, written: &str, keyword: TokenKind
 
 /// `None` for a reference to a declaration that has the same mistake: the declaration's problem stands for all its uses.
 fn keyword_as_name(context: &Context<'_>, span: Span, written: &str, of: EntityKind) -> Option<Problem> {
-    let message = format!("`{written}` is a word of the language, so {} cannot be called that", of.a_noun());
+    let message = format!("`{written}` is a keyword, so {} cannot be called that", of.a_noun());
     let help = format!("write `^{written}` to use it as a name, or choose another name");
     let problem = RULE.problem(span, message).help(help);
     let name = Name { text: written.into(), span };
@@ -117,7 +117,7 @@ fn keyword_as_name(context: &Context<'_>, span: Span, written: &str, of: EntityK
     match context.resolve(of, &name) {
         Resolution::Nothing => Some(
             RULE.problem(span, format!("expected the name of {}, found `{written}`", of.a_noun()))
-                .help(format!("`{written}` is a word of the language; only a name can stand here")),
+                .help(format!("`{written}` is a keyword; only a name can stand here")),
         ),
         Resolution::To(declared) if context.name_of(declared).is_some_and(is_bare) => None,
         _ => Some(problem.fix(format!("write `^{written}`"), [context.replace(Span::at(span.start), "^")])),
@@ -400,14 +400,14 @@ mod tests {
         check(
             "wheel a with radios 4.5",
             &expect![[r#"
-            error[syntax-error] 1:14 "radios" `radios` is not a word of the language; did you mean `radius`?
+            error[syntax-error] 1:14 "radios" `radios` is not a keyword; did you mean `radius`?
               fix: change to `radius` -> wheel a with radius 4.5
         "#]],
         );
         check(
             "weel a with radius 4.5",
             &expect![[r#"
-            error[syntax-error] 1:1 "weel" `weel` is not a word of the language; did you mean `wheel`?
+            error[syntax-error] 1:1 "weel" `weel` is not a keyword; did you mean `wheel`?
               fix: change to `wheel` -> wheel a with radius 4.5
         "#]],
         );
@@ -420,7 +420,7 @@ mod tests {
              robot r with port 1 has { a b } wheels with sensors { left }\n\
              movement m of r { turn left until { left } }",
             &expect![[r#"
-                error[syntax-error] 2:8 "left" `left` is a word of the language, so a sensor cannot be called that
+                error[syntax-error] 2:8 "left" `left` is a keyword, so a sensor cannot be called that
                   help: write `^left` to use it as a name, or choose another name
                   suggestion: rename it to `left_sensor_2` -> sensor left_sensor_2 ⏎ robot r with port 1 has { a b } wheels with sensors { left_sensor_2 } ⏎ movement m of r { turn left until { left_sensor_2 } }
                   fix: write `^left` -> sensor ^left ⏎ robot r with port 1 has { a b } wheels with sensors { ^left } ⏎ movement m of r { turn left until { ^left } }
@@ -435,7 +435,7 @@ mod tests {
                 error[unresolved-reference] 2:29 "b" there is no wheel called `b`
                   help: declare it: `wheel NAME with radius CENTIMETRES`
                   suggestion: declare the wheel `b` -> wheel b with radius 4.5
-                error[syntax-error] 2:55 "left" `left` is a word of the language, so a sensor cannot be called that
+                error[syntax-error] 2:55 "left" `left` is a keyword, so a sensor cannot be called that
                   help: write `^left` to use it as a name, or choose another name
                   fix: write `^left` -> robot r with port 1 has { a b } wheels with sensors { ^left }
             "#]],
@@ -462,7 +462,7 @@ mod tests {
         check(
             "wheel left with radius 4.5",
             &expect![[r#"
-                error[syntax-error] 1:7 "left" `left` is a word of the language, so a wheel cannot be called that
+                error[syntax-error] 1:7 "left" `left` is a keyword, so a wheel cannot be called that
                   help: write `^left` to use it as a name, or choose another name
                   suggestion: rename it to `left_wheel` -> wheel left_wheel with radius 4.5
                   fix: write `^left` -> wheel ^left with radius 4.5
