@@ -720,7 +720,7 @@ environment e with ip here has { ^left q q } robots with { m n o m } moves";
         let environment = only(&program).unwrap();
         assert_eq!(environment.host, Some([10, 0, 0, 7].into()));
         assert_eq!(environment.robots.len(), 2);
-        assert_eq!(environment.robots[0].drive, Drive::FourMecanum);
+        assert_eq!(environment.robots[0].drive, Drive::Mecanum);
         assert_eq!(environment.robots[0].name, "left");
         assert_eq!(environment.robots[0].sensors.len(), 2);
         assert_eq!(environment.robots[1].drive, Drive::TwoWheel);

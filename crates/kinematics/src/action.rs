@@ -172,7 +172,7 @@ mod tests {
     fn the_speed_of_an_arc_is_that_of_its_fastest_wheel() {
         // Two wheels: R + d/2; skid-steer with its wider track; mecanum wheels: R + K with K = (wheelbase + track)/2.
         let widest =
-            [(Drive::TwoWheel, 0.15), (Drive::FourWheel, 0.15 * 1.5), (Drive::FourMecanum, 0.125 + 0.15)];
+            [(Drive::TwoWheel, 0.15), (Drive::FourWheel, 0.15 * 1.5), (Drive::Mecanum, 0.125 + 0.15)];
         for (drive, beyond) in widest {
             let arc = Action::Arc { angle: -PI, radius: 1.0, speed: 0.2, reverse: false };
             let leg = leg(&model(drive), Pose::default(), arc);

@@ -100,7 +100,7 @@ fn only_what_is_used_is_imported() {
     assert_eq!(imports(&environment("nothing", vec![], vec![], vec![])), "");
     assert_eq!(imports(&area_1(Drive::TwoWheel)), "TwoWheelRobot movement");
     assert_eq!(imports(&area_1(Drive::FourWheel)), "FourWheelRobot movement");
-    assert_eq!(imports(&area_1(Drive::FourMecanum)), "MecanumRobot movement");
+    assert_eq!(imports(&area_1(Drive::Mecanum)), "MecanumRobot movement");
     assert_eq!(imports(&four_robots()), "FourWheelRobot MecanumRobot TwoWheelRobot movement parallel");
 }
 

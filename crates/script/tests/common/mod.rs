@@ -135,7 +135,7 @@ pub(crate) fn four_robots() -> Environment {
     let robots = vec![
         robot("robot_1", Drive::TwoWheel, 19997),
         robot("robot_2", Drive::FourWheel, 19998),
-        robot("robot_3", Drive::FourMecanum, 19999),
+        robot("robot_3", Drive::Mecanum, 19999),
         robot("robot_4", Drive::TwoWheel, 20000),
     ];
     let movements = vec![

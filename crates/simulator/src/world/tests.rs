@@ -53,7 +53,7 @@ fn turns_on_the_spot_to_the_left() {
 
 #[test]
 fn mecanum_wheels_drive_sideways() {
-    let mut world = world(Drive::FourMecanum);
+    let mut world = world(Drive::Mecanum);
     for (wheel, rate) in [-1.0, 1.0, 1.0, -1.0].into_iter().enumerate() {
         world.set_target(0, wheel, rate);
     }
