@@ -251,7 +251,7 @@ fn step_kind(kind: &ActionKind) -> StepKind {
 fn ended(action: Option<kinematics::Action>, until: Option<&Condition>) -> StepKind {
     match (action, until) {
         (Some(action), None) => StepKind::Action(action),
-        (Some(most), Some(_)) => StepKind::Until { most },
+        (Some(limit), Some(_)) => StepKind::Until { limit },
         (None, _) => StepKind::Action(kinematics::Action::Unknown),
     }
 }

@@ -63,7 +63,7 @@ impl NodeKind {
                 }
                 None => (Self::Unknown(None), Summary::unknown()),
             },
-            StepKind::Until { most } => (Self::until(model, *most), Summary::unknown()),
+            StepKind::Until { limit } => (Self::until(model, *limit), Summary::unknown()),
             StepKind::Repeat { count, body } => {
                 let body = Block::new(model, body, called);
                 let summary = body.summary.repeated(*count);
@@ -81,7 +81,7 @@ impl NodeKind {
         }
     }
 
-    fn until(model: &Model, most: Action) -> Self {
-        Self::Unknown(Course::new(model, most).map(Box::new))
+    fn until(model: &Model, limit: Action) -> Self {
+        Self::Unknown(Course::new(model, limit).map(Box::new))
     }
 }

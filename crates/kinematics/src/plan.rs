@@ -151,7 +151,7 @@ pub fn plan_schedule(
     let mut walks: Vec<Walk> = robots
         .iter()
         .zip(shares(&wanted))
-        .map(|(robot, most)| Walk::new(&blocks, RobotPath::new(robot.start), most))
+        .map(|(robot, max_legs)| Walk::new(&blocks, RobotPath::new(robot.start), max_legs))
         .collect();
     let mut clock = Some(0.0);
     for (group, runs) in schedule.iter().enumerate() {

@@ -16,10 +16,10 @@ pub struct Step {
 pub enum StepKind {
     /// An action.
     Action(Action),
-    /// An action that the world may end before its time.
+    /// An action that a condition may end early.
     Until {
-        /// The action up to its bound.
-        most: Action,
+        /// The action without its condition: what it does at most.
+        limit: Action,
     },
     /// Its body, so many times.
     Repeat {

@@ -54,7 +54,7 @@ pub(crate) fn slam() -> Step {
 }
 
 pub(crate) fn until(distance: f64) -> Step {
-    step(StepKind::Until { most: Action::Move { distance, speed: 0.09 } })
+    step(StepKind::Until { limit: Action::Move { distance, speed: 0.09 } })
 }
 
 pub(crate) fn repeat(count: u32, body: Vec<Step>) -> Step {

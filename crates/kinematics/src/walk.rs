@@ -53,13 +53,13 @@ enum Entered {
 
 impl<'p> Walk<'p> {
     /// Starts at the end of `path` and lists so many legs at most.
-    pub(crate) fn new(blocks: &'p [Block], path: RobotPath, most: u64) -> Self {
+    pub(crate) fn new(blocks: &'p [Block], path: RobotPath, max_legs: u64) -> Self {
         let index = ActionIndex { group: 0, run: 0, action: 0 };
         Self {
             blocks,
             path,
             clock: Some(0.0),
-            left: most,
+            left: max_legs,
             index,
             is_way: false,
             frames: Vec::new(),
@@ -112,7 +112,7 @@ impl<'p> Walk<'p> {
         }
         match &node.kind {
             NodeKind::Course(course) => self.list(node.number, course),
-            NodeKind::Unknown(most) => self.lose(node.number, most.as_deref().map(Possible::Bound)),
+            NodeKind::Unknown(limit) => self.lose(node.number, limit.as_deref().map(Possible::Bound)),
             NodeKind::Repeat { count, body } => {
                 self.rounds.push(1);
                 self.counts.push(*count);

@@ -22,15 +22,15 @@ fn slip_within(written: &str, intended: &str, bound: Distance) -> Option<Distanc
     }
     let only_case = one.eq_ignore_ascii_case(other);
     // In bytes there are not fewer than in characters, so this turns away too few rather than too many.
-    let most = (written.len().max(intended.len()) / 3).max(1);
-    if !only_case && (!bound.0 || at_least(one, other) > most.min(bound.1)) {
+    let max_edits = (written.len().max(intended.len()) / 3).max(1);
+    if !only_case && (!bound.0 || at_least(one, other) > max_edits.min(bound.1)) {
         return None;
     }
     let longest = written.chars().count().max(intended.chars().count());
-    let most = (longest / 3).max(usize::from(is_swap(written, intended)));
+    let max_edits = (longest / 3).max(usize::from(is_swap(written, intended)));
     let distance = strsim::osa_distance(one, other);
     let found = (!only_case, distance);
-    ((only_case || distance <= most) && found <= bound).then_some(found)
+    ((only_case || distance <= max_edits) && found <= bound).then_some(found)
 }
 
 /// A number of edits that it takes at least to make one of the other, which differs from it at both ends.
@@ -116,8 +116,8 @@ mod tests {
         fn what_words_have_in_common_does_not_matter(one in "[abA_é]{0,7}", other in "[abA_é]{0,7}") {
             let longest = one.chars().count().max(other.chars().count());
             let distance = strsim::osa_distance(&one, &other);
-            let most = (longest / 3).max(usize::from(is_swap(&one, &other)));
-            let similar = one != other && (one.eq_ignore_ascii_case(&other) || distance <= most);
+            let max_edits = (longest / 3).max(usize::from(is_swap(&one, &other)));
+            let similar = one != other && (one.eq_ignore_ascii_case(&other) || distance <= max_edits);
             proptest::prop_assert_eq!(is_similar(&one, &other), similar);
         }
 

@@ -99,8 +99,8 @@ fn continuation(context: &CursorContext<'_>, word: TokenKind) -> Continuation {
     let mut before = context.before.clone();
     let spelling = word.spelling().unwrap_or_default().to_owned();
     let mut continued = Continuation { insert: spelling.clone(), label: spelling, last: word };
-    let most = if context.at_end { MAX_KEYWORDS } else { usize::from(leads_on(context, word)) };
-    for _ in 0..most {
+    let max_count = if context.at_end { MAX_KEYWORDS } else { usize::from(leads_on(context, word)) };
+    for _ in 0..max_count {
         let end = Span::at(before.last().map_or(0, |(_, span)| span.end));
         before.push((continued.last, end));
         let mut expected = expected_after(&context.text, &before);
