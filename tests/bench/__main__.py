@@ -5,7 +5,7 @@
 
 All servers run in parallel and take turns for each figure, so that other load on the machine affects all of them equally.
 Times are medians in milliseconds; with two servers, the last column is the first one's time divided by the second one's.
-On a busy machine, `--processor` gives steadier figures: what the servers run for each step, whoever else runs in between.
+On a busy machine, `--processor` gives steadier figures: the processor time of the servers for each step, without that of other processes.
 """
 
 from __future__ import annotations
