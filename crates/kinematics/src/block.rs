@@ -2,7 +2,7 @@
 
 use crate::action::Course;
 use crate::summary::{Motion, Summary};
-use crate::{Action, Model, Pose, Step, StepKind};
+use crate::{Model, MotionPrimitive, Pose, Step, StepKind};
 
 /// A sequence of steps, as one robot does them. Steps without an entry in a plan are left out, so that a look at every
 /// round costs no more than its entries.
@@ -81,7 +81,7 @@ impl NodeKind {
         }
     }
 
-    fn until(model: &Model, limit: Action) -> Self {
+    fn until(model: &Model, limit: MotionPrimitive) -> Self {
         Self::Unknown(Course::new(model, limit).map(Box::new))
     }
 }

@@ -33,7 +33,7 @@ mod testing;
 mod traction;
 mod walk;
 
-pub use action::{Action, LegKind};
+pub use action::{LegKind, MotionPrimitive};
 pub use leg::{ActionIndex, Call, Leg, Place};
 pub use model::{Geometry, Model, ModelError, Settable, Setting, Turning};
 pub use path::{RobotPath, TimedPose};

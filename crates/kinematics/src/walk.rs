@@ -264,8 +264,8 @@ mod tests {
         arc, call, either, forward, left, numbered, repeat, slam, step, turn, two_wheels, until, wait,
     };
     use crate::{
-        Action, LegKind, MAX_ACTIONS, Movement, Plan, Pose, RobotPlan, Step, StepKind, plan_movement,
-        plan_schedule, plan_step, plan_steps,
+        LegKind, MAX_ACTIONS, MotionPrimitive, Movement, Plan, Pose, RobotPlan, Step, StepKind,
+        plan_movement, plan_schedule, plan_step, plan_steps,
     };
 
     fn path(steps: Vec<Step>) -> RobotPath {
@@ -312,7 +312,7 @@ mod tests {
         let path_of = path;
         let slalom = vec![arc(90.0, 0.5, 0.09), arc(-180.0, 0.5, 0.2), arc(90.0, 0.5, 0.09)];
         comes_to(&path_of(slalom), 3, (2.0, 0.0, 0.0));
-        let lane = || step(StepKind::Action(Action::Move { distance: 4.0, speed: 0.3 }));
+        let lane = || step(StepKind::Action(MotionPrimitive::Move { distance: 4.0, speed: 0.3 }));
         let lanes = repeat(5, vec![lane(), arc(-180.0, 0.25, 0.3), lane(), arc(180.0, 0.25, 0.3)]);
         comes_to(&path_of(vec![lanes]), 20, (0.0, -5.0, 0.0));
     }
@@ -496,11 +496,17 @@ mod tests {
         let listed: Vec<(usize, bool)> =
             plan.robots.iter().map(|path| (path.legs.len(), path.truncated)).collect();
         assert_eq!(listed, [(69_998, true), (2, false), (30_000, false)]);
-        let once =
-            plan_movement(&two_wheels(), Pose::default(), &[Action::Move { distance: 0.1, speed: 0.09 }]);
+        let once = plan_movement(
+            &two_wheels(),
+            Pose::default(),
+            &[MotionPrimitive::Move { distance: 0.1, speed: 0.09 }],
+        );
         let turned = plan.robots[1].legs[1].duration;
-        let metre =
-            plan_movement(&two_wheels(), Pose::default(), &[Action::Move { distance: 1.0, speed: 0.09 }]);
+        let metre = plan_movement(
+            &two_wheels(),
+            Pose::default(),
+            &[MotionPrimitive::Move { distance: 1.0, speed: 0.09 }],
+        );
         let expected = 100_000.0 * once.legs[0].duration + metre.legs[0].duration + turned;
         assert!((plan.duration.unwrap() - expected).abs() < 1e-6 && plan.is_truncated());
         assert!((plan.robots[0].end().x - 10_001.0).abs() < 1e-6);
@@ -510,10 +516,10 @@ mod tests {
         (0..4, -2.0..2.0, 0.05..1.0, 0.05..0.5, any::<bool>()).prop_map(
             |(which, amount, radius, speed, reverse)| {
                 StepKind::Action(match which {
-                    0 => Action::Move { distance: amount, speed },
-                    1 => Action::Turn { angle: amount, speed },
-                    2 => Action::Arc { angle: amount, radius, speed, reverse },
-                    _ => Action::Wait { seconds: amount.abs() },
+                    0 => MotionPrimitive::Move { distance: amount, speed },
+                    1 => MotionPrimitive::Turn { angle: amount, speed },
+                    2 => MotionPrimitive::Arc { angle: amount, radius, speed, reverse },
+                    _ => MotionPrimitive::Wait { seconds: amount.abs() },
                 })
             },
         )
@@ -537,7 +543,7 @@ mod tests {
     }
 
     /// An action of a program that is written out, with its number and where it is.
-    type Written = (usize, Vec<u32>, Vec<(usize, usize)>, Action);
+    type Written = (usize, Vec<u32>, Vec<(usize, usize)>, MotionPrimitive);
 
     /// Writes a program out, round by round; of branches their first way, under the number of the branch.
     fn write_out(steps: &[Step], called: &[Vec<Step>], at: &Written, found: &mut Vec<Written>) {
@@ -586,9 +592,9 @@ mod tests {
             let side = numbered(side.into_iter().filter(|step| !calls_any(step)).collect());
             let (main, called) = (numbered(main), [side]);
             let mut written = Vec::new();
-            write_out(&main, &called, &(0, vec![], vec![], Action::Unknown), &mut written);
+            write_out(&main, &called, &(0, vec![], vec![], MotionPrimitive::Unknown), &mut written);
             prop_assume!(written.len() < 20_000);
-            let actions: Vec<Action> = written.iter().map(|(.., action)| *action).collect();
+            let actions: Vec<MotionPrimitive> = written.iter().map(|(.., action)| *action).collect();
             let flat = plan_movement(&model, Pose::default(), &actions);
             let flat_end = flat.legs.last().map_or(Some(0.0), Leg::end).unwrap();
 

@@ -95,7 +95,8 @@ fn with_obstacle(obstacles: &Obstacles, robot: usize, body: Body, path: &RobotPa
     for leg in path.legs.iter().filter(|leg| leg.kind != LegKind::Whole) {
         let mut first = with_fixed(&obstacles.fixed, body, leg, &mut steps);
         if let Some(start) = leg.start {
-            let way = Way { start, speed: leg.top_speed(reach(body)), pose: |seconds| leg.pose_at(seconds) };
+            let way =
+                BodyMotion { start, speed: leg.top_speed(reach(body)), pose: |seconds| leg.pose_at(seconds) };
             for other in &mut moving {
                 let until = first.map_or(leg.duration, |(seconds, _)| seconds);
                 first = other.meet(body, &way, until).map(|seconds| (seconds, other.obstacle)).or(first);
@@ -129,7 +130,7 @@ fn with_fixed(space: &Space, body: Body, leg: &Leg, steps: &mut u32) -> Option<(
 }
 
 /// The motion of a body for some time.
-struct Way<P: Fn(f64) -> Pose> {
+struct BodyMotion<P: Fn(f64) -> Pose> {
     /// Seconds since the start of the run.
     start: f64,
     /// The highest speed of any of its points.
@@ -141,7 +142,7 @@ struct Way<P: Fn(f64) -> Pose> {
 impl Moving {
     /// The seconds of a way after which a body and the obstacle meet, if they do before `until`: the same search with the
     /// speeds of both, segment by segment of the obstacle's path. A body at rest is met, too.
-    fn meet(&mut self, body: Body, way: &Way<impl Fn(f64) -> Pose>, until: f64) -> Option<f64> {
+    fn meet(&mut self, body: Body, way: &BodyMotion<impl Fn(f64) -> Pose>, until: f64) -> Option<f64> {
         let mut seconds = 0.0;
         while seconds < until && self.steps < MAX_STEPS {
             self.steps += 1;
@@ -261,13 +262,13 @@ mod tests {
     use std::f64::consts::FRAC_PI_2;
 
     use proptest::prelude::*;
-    use pydslrep_kinematics::{Action, Drive, RobotPlan, Run, motion, plan};
+    use pydslrep_kinematics::{Drive, MotionPrimitive, RobotPlan, Run, motion, plan};
 
     use super::*;
     use crate::{Obstacle, Robot, Shape, Waypoint, Wheel};
 
-    const AHEAD: Action = Action::Move { distance: 2.0, speed: 0.1 };
-    const LEFT: Action = Action::Turn { angle: FRAC_PI_2, speed: motion::RIM_SPEED };
+    const AHEAD: MotionPrimitive = MotionPrimitive::Move { distance: 2.0, speed: 0.1 };
+    const LEFT: MotionPrimitive = MotionPrimitive::Turn { angle: FRAC_PI_2, speed: motion::RIM_SPEED };
 
     fn scene(starts: &[Pose], obstacles: Vec<Obstacle>) -> Scene {
         let robot = |(index, start): (usize, &Pose)| {
@@ -278,13 +279,13 @@ mod tests {
     }
 
     /// Groups of runs: each a robot with its actions.
-    fn found(scene: &Scene, schedule: &[&[(usize, &[Action])]]) -> Vec<Collision> {
+    fn found(scene: &Scene, schedule: &[&[(usize, &[MotionPrimitive])]]) -> Vec<Collision> {
         let robots: Vec<_> = scene
             .robots
             .iter()
             .map(|robot| RobotPlan { model: robot.model().unwrap(), start: robot.start })
             .collect();
-        let group = |group: &&[(usize, &[Action])]| {
+        let group = |group: &&[(usize, &[MotionPrimitive])]| {
             group.iter().map(|&(robot, actions)| Run { robot, actions: actions.to_vec() }).collect()
         };
         let schedule: Vec<Vec<Run>> = schedule.iter().map(group).collect();
@@ -366,19 +367,19 @@ mod tests {
     fn robots_do_not_collide_after_an_action_of_unknown_duration() {
         // Where each robot is once the unknown action begins is not known, nor when others start after it.
         for schedule in [
-            [&[(0, &[Action::Unknown, AHEAD][..]), (1, &[AHEAD])][..], &[]],
-            [&[(0, &[AHEAD]), (1, &[Action::Unknown, AHEAD])], &[]],
-            [&[(0, &[Action::Unknown])], &[(0, &[AHEAD]), (1, &[AHEAD])]],
-            [&[(0, &[Action::Unknown])], &[(1, &[AHEAD])]],
+            [&[(0, &[MotionPrimitive::Unknown, AHEAD][..]), (1, &[AHEAD])][..], &[]],
+            [&[(0, &[AHEAD]), (1, &[MotionPrimitive::Unknown, AHEAD])], &[]],
+            [&[(0, &[MotionPrimitive::Unknown])], &[(0, &[AHEAD]), (1, &[AHEAD])]],
+            [&[(0, &[MotionPrimitive::Unknown])], &[(1, &[AHEAD])]],
         ] {
             assert_eq!(found(&crossing(), &schedule), [], "{schedule:?}");
         }
         // A third robot's unknown action leaves the two where they are, but not when.
         let mut scene = crossing();
         scene.robots.push(Robot { start: Pose::new(5.0, 5.0, 0.0), ..scene.robots[0].clone() });
-        let before: &[(usize, &[Action])] = &[(2, &[Action::Unknown])];
+        let before: &[(usize, &[MotionPrimitive])] = &[(2, &[MotionPrimitive::Unknown])];
         assert_eq!(found(&scene, &[before, &[(0, &[AHEAD]), (1, &[AHEAD])]]), []);
-        let collisions = found(&scene, &[&[(0, &[AHEAD]), (1, &[AHEAD]), (2, &[Action::Unknown])]]);
+        let collisions = found(&scene, &[&[(0, &[AHEAD]), (1, &[AHEAD]), (2, &[MotionPrimitive::Unknown])]]);
         assert!(
             collisions.len() == 1 && collisions[0].time.is_some(),
             "it delays nobody in its own group: {collisions:?}"
@@ -387,14 +388,17 @@ mod tests {
 
     #[test]
     fn robots_collide_before_an_action_of_unknown_duration() {
-        let collisions = found(&crossing(), &[&[(0, &[AHEAD, Action::Unknown]), (1, &[AHEAD])]]);
+        let collisions = found(&crossing(), &[&[(0, &[AHEAD, MotionPrimitive::Unknown]), (1, &[AHEAD])]]);
         let [collision] = collisions.as_slice() else { panic!("{collisions:?}") };
         assert!(collision.robot == 0 && collision.with == SceneObject::Robot(1), "{collision:?}");
         assert!(collision.time.is_some_and(|time| (time - 7.1).abs() < 0.05), "{collision:?}");
         // One that turns on the spot or explores from there may be anywhere when the other comes by.
-        let to_the_middle = Action::Move { distance: 1.0, speed: 0.1 };
-        let later = Action::Move { distance: 2.0, speed: 0.01 };
-        assert_eq!(found(&crossing(), &[&[(0, &[to_the_middle, Action::Unknown]), (1, &[later])]]), []);
+        let to_the_middle = MotionPrimitive::Move { distance: 1.0, speed: 0.1 };
+        let later = MotionPrimitive::Move { distance: 2.0, speed: 0.01 };
+        assert_eq!(
+            found(&crossing(), &[&[(0, &[to_the_middle, MotionPrimitive::Unknown]), (1, &[later])]]),
+            []
+        );
         assert_eq!(found(&crossing(), &[&[(0, &[to_the_middle]), (1, &[later])]]).len(), 1);
     }
 
@@ -402,7 +406,7 @@ mod tests {
     fn an_obstacle_on_a_known_path_is_hit_at_an_unknown_time() {
         let wall = Obstacle::wall("w", (1.0, -1.0), (1.0, 1.0), 0.1);
         let scene = scene(&[Pose::default(), Pose::new(-5.0, -1.0, FRAC_PI_2)], vec![wall]);
-        let collisions = found(&scene, &[&[(1, &[Action::Unknown])], &[(0, &[AHEAD])]]);
+        let collisions = found(&scene, &[&[(1, &[MotionPrimitive::Unknown])], &[(0, &[AHEAD])]]);
         assert!(
             collisions.len() == 1
                 && collisions[0].time.is_none()
@@ -410,7 +414,7 @@ mod tests {
             "{collisions:?}"
         );
         assert!((collisions[0].pose.x - 0.8).abs() < 0.001, "{collisions:?}");
-        assert_eq!(found(&scene, &[&[(0, &[Action::Unknown, AHEAD])]]), [], "nor is its path");
+        assert_eq!(found(&scene, &[&[(0, &[MotionPrimitive::Unknown, AHEAD])]]), [], "nor is its path");
     }
 
     /// A post of 10 cm that moves.
@@ -471,7 +475,7 @@ mod tests {
             &[Pose::default(), Pose::new(-5.0, -1.0, FRAC_PI_2)],
             vec![post(&[[0.0, 1.0, 0.0], [9e5, 1.0, 0.0]], true)],
         );
-        assert_eq!(found(&scene, &[&[(1, &[Action::Unknown])], &[(0, &[AHEAD])]]), []);
+        assert_eq!(found(&scene, &[&[(1, &[MotionPrimitive::Unknown])], &[(0, &[AHEAD])]]), []);
         assert_eq!(found(&scene, &[&[(0, &[AHEAD])]]).len(), 1);
     }
 
@@ -485,7 +489,7 @@ mod tests {
             .map(|robot| RobotPlan { model: robot.model().unwrap(), start: robot.start })
             .collect();
         // It comes to where the other one is after its first move, which has gone on by then.
-        let slowly = Action::Move { distance: 2.0, speed: 0.05 };
+        let slowly = MotionPrimitive::Move { distance: 2.0, speed: 0.05 };
         let runs =
             vec![Run { robot: 0, actions: vec![AHEAD, AHEAD] }, Run { robot: 1, actions: vec![slowly] }];
         let mut plan = plan(&robots, &[runs]).unwrap();
@@ -503,7 +507,7 @@ mod tests {
             let beside = Obstacle::wall("beside", (-1.0, 0.2015), (40.0, 0.2015), 0.1);
             let ahead = Obstacle::wall("ahead", (x, -1.0), (x, 0.0), 0.1);
             let scene = scene(&[Pose::default()], vec![beside, ahead]);
-            found(&scene, &[&[(0, &[Action::Move { distance: 30.0, speed: 0.1 }])]]).len()
+            found(&scene, &[&[(0, &[MotionPrimitive::Move { distance: 30.0, speed: 0.1 }])]]).len()
         };
         assert_eq!((found_in(15.0), found_in(25.0)), (1, 0));
     }
@@ -513,7 +517,7 @@ mod tests {
         let scene = scene(&[], vec![post(&[[0.0, 3.0, 0.0], [10.0, 3.0, 0.0], [40.0, 0.0, 0.0]], false)]);
         let mut obstacles = Obstacles::of(&scene);
         let body = Body { length: 0.3, width: 0.3 };
-        let way = |start| Way { start, speed: 0.0, pose: |_: f64| Pose::default() };
+        let way = |start| BodyMotion { start, speed: 0.0, pose: |_: f64| Pose::default() };
         let seconds = obstacles.moving[0].meet(body, &way(5.0), 90.0).unwrap();
         assert!((seconds - (5.0 + 27.5)).abs() < 0.02, "{seconds}");
         assert_eq!(obstacles.moving[0].meet(body, &way(5.0), 30.0), None);
@@ -538,9 +542,9 @@ mod tests {
             let scene = scene(&[Pose::default()], vec![bay]);
             let collisions = found(&scene, &[&[(0, &[AHEAD])]]);
             assert!(collisions.len() == 1 && (collisions[0].pose.x - 1.65).abs() < 0.001, "{collisions:?}");
-            let shorter = Action::Move { distance: 1.6, speed: 0.1 };
+            let shorter = MotionPrimitive::Move { distance: 1.6, speed: 0.1 };
             assert_eq!(found(&scene, &[&[(0, &[shorter])]]), []);
-            let across = Action::Move { distance: 1.0, speed: 0.1 };
+            let across = MotionPrimitive::Move { distance: 1.0, speed: 0.1 };
             let collisions = found(&scene, &[&[(0, &[across, LEFT, across])]]);
             assert!(
                 collisions.len() == 1 && (collisions[0].pose.y - 0.25).abs() < 0.001,
@@ -550,10 +554,10 @@ mod tests {
     }
 
     prop_compose! {
-        fn actions()(moves in prop::collection::vec((0..3, -2.0..2.0, 0.05..0.5), 1..5)) -> Vec<Action> {
+        fn actions()(moves in prop::collection::vec((0..3, -2.0..2.0, 0.05..0.5), 1..5)) -> Vec<MotionPrimitive> {
             let action = |&(which, amount, speed): &(i32, f64, f64)| match which {
-                0 => Action::Turn { angle: amount, speed: motion::RIM_SPEED },
-                _ => Action::Move { distance: amount, speed },
+                0 => MotionPrimitive::Turn { angle: amount, speed: motion::RIM_SPEED },
+                _ => MotionPrimitive::Move { distance: amount, speed },
             };
             moves.iter().map(action).collect()
         }
@@ -575,17 +579,17 @@ mod tests {
             let scene =
                 scene(&[Pose::default(), Pose::new(x, y, theta)], vec![hook, wall, post(&way, repeats)]);
             prop_assume!(scene.overlaps().is_empty());
-            let groups: Vec<Vec<(usize, &[Action])>> = if together {
+            let groups: Vec<Vec<(usize, &[MotionPrimitive])>> = if together {
                 vec![vec![(0, &first), (1, &second)]]
             } else {
                 vec![vec![(0, &first)], vec![(1, &second)]]
             };
-            let schedule: Vec<&[(usize, &[Action])]> = groups.iter().map(Vec::as_slice).collect();
+            let schedule: Vec<&[(usize, &[MotionPrimitive])]> = groups.iter().map(Vec::as_slice).collect();
             let found = found(&scene, &schedule);
 
             let robots: Vec<_> =
                 scene.robots.iter().map(|robot| RobotPlan { model: robot.model().unwrap(), start: robot.start }).collect();
-            let runs = |group: &Vec<(usize, &[Action])>| {
+            let runs = |group: &Vec<(usize, &[MotionPrimitive])>| {
                 group.iter().map(|&(robot, actions)| Run { robot, actions: actions.to_vec() }).collect()
             };
             let plan = plan(&robots, &groups.iter().map(runs).collect::<Vec<Vec<Run>>>()).unwrap();

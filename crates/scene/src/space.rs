@@ -11,12 +11,12 @@ use crate::{Body, Mount, Obstacle, Scene, Shape, Trajectory};
 #[derive(Debug, Clone, Default)]
 pub struct Space {
     parts: Vec<ConvexPart>,
-    movers: Vec<Mover>,
+    movers: Vec<PartMotion>,
 }
 
 /// The trajectory of a part that moves.
 #[derive(Debug, Clone)]
-struct Mover {
+struct PartMotion {
     /// Its index among the parts.
     part: usize,
     /// The centre of the part, in the obstacle's frame.
@@ -105,7 +105,7 @@ impl Space {
             let heading = obstacle.pose.theta;
             let mover = |(part, found): (usize, &ConvexPart)| {
                 let centre = found.placement.inverse_transform_point(found.centre);
-                Mover { part, centre, heading, trajectory: trajectory.clone() }
+                PartMotion { part, centre, heading, trajectory: trajectory.clone() }
             };
             space.movers.extend(space.parts.iter().enumerate().skip(first).map(mover));
         }
@@ -143,7 +143,7 @@ impl Space {
     /// The nearest thing that a sensor of a robot at `pose` sees: an obstacle, or one of the `others`, which are robots by
     /// their index, with bodies and poses.
     pub fn sight(&self, pose: Pose, mount: &Mount, others: &[(usize, Body, Pose)]) -> Option<Sighting> {
-        let cone = SensorCone::new(pose.compose(&mount.pose), mount);
+        let cone = FloorCone::new(pose.compose(&mount.pose), mount);
         let obstacles = self.parts.iter().map(|part| (SceneObject::Obstacle(part.owner), *part));
         let robots = others
             .iter()
@@ -252,7 +252,7 @@ impl Solid {
 }
 
 /// The cone of a sensor, on the floor.
-struct SensorCone {
+struct FloorCone {
     at: Vector,
     heading: Vector,
     /// Cosine of half the cone's opening.
@@ -261,7 +261,7 @@ struct SensorCone {
     edges: [Vector; 2],
 }
 
-impl SensorCone {
+impl FloorCone {
     fn new(pose: Pose, mount: &Mount) -> Self {
         let direction = |angle: f64| Vector::new((pose.theta + angle).cos(), (pose.theta + angle).sin());
         let half = mount.cone / 2.0;

@@ -9,7 +9,7 @@ use common::{
     area_1, environment, four_robots, move_at, move_by, movement, robot, sensors, slam, turn, turn_until,
     with_sensors,
 };
-use pydslrep_analysis::environment::{Action, Environment, SensorKind, Source};
+use pydslrep_analysis::environment::{Environment, ResolvedAction, SensorKind, Source};
 use pydslrep_kinematics::Drive;
 use pydslrep_script::{Target, file_name, generate};
 
@@ -89,8 +89,8 @@ fn slam_and_more() -> Environment {
 /// Actions from another file with special characters in its name.
 fn imported() -> Environment {
     let source = |line| Source { file: Some("größe/机器人.pyr".to_owned()), line };
-    let actions: Vec<Action> = (1..60)
-        .map(|length| Action { text: "x".repeat(length), source: source(1), ..move_by(1.0, 1) })
+    let actions: Vec<ResolvedAction> = (1..60)
+        .map(|length| ResolvedAction { text: "x".repeat(length), source: source(1), ..move_by(1.0, 1) })
         .collect();
     environment(
         "imported",

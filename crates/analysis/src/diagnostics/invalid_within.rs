@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use pydslrep_scene::{ENDING, Robot, Scene};
-use pydslrep_syntax::ast::{Action, Condition, Entity, Name, SensorKind, Within};
+use pydslrep_syntax::ast::{Action, Condition, Entity, Name, SensorKeyword, Within};
 use pydslrep_syntax::{EntityKind, Span};
 
 use super::context::Context;
@@ -164,7 +164,7 @@ fn are_bumpers(context: &Context<'_>, condition: &Condition) -> bool {
     let is_bumper = |name| {
         let id = context.resolve(EntityKind::Sensor, name).entity();
         let sensor = id.and_then(|id| context.signature(id)).and_then(Signature::sensor);
-        sensor.is_some_and(|sensor| matches!(sensor.kind, Some((SensorKind::Bumper, _))))
+        sensor.is_some_and(|sensor| matches!(sensor.kind, Some((SensorKeyword::Bumper, _))))
     };
     let names = &condition.sensors.names;
     !names.is_empty() && !condition.sensors.broken && names.iter().all(is_bumper)

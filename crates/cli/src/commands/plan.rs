@@ -20,7 +20,7 @@ use crate::options::edition_parser;
 use crate::report::numbers::{fixed, heading};
 use crate::report::output;
 use crate::run::pictures::Pictures;
-use crate::run::planned::Planned;
+use crate::run::planned::PlannedEnvironment;
 use crate::run::reporter::Reporter;
 
 const HELP: Help = Help {
@@ -87,9 +87,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let prepared = program::prepare(&inputs, file, &ids);
     let planned = |environment: Environment| {
         let scene = inputs.scene(file, &environment)?;
-        Planned::new(environment, scene)
+        PlannedEnvironment::new(environment, scene)
     };
-    let plans: Vec<Planned> = prepared.environments.into_iter().map(planned).collect::<Result<_, _>>()?;
+    let plans: Vec<PlannedEnvironment> =
+        prepared.environments.into_iter().map(planned).collect::<Result<_, _>>()?;
     output::print(&if arguments.json { json(&plans)? } else { plans.iter().map(table).collect() })?;
     if let Some(planned) = plans.first() {
         planned.draw(&arguments.pictures, "planned path", &planned.routes())?;
@@ -116,7 +117,7 @@ const MIN_COLUMNS: usize = 16;
 /// Actions that begin within this many seconds of each other begin together.
 const AT_ONCE: f64 = 0.005;
 
-fn table(planned: &Planned) -> String {
+fn table(planned: &PlannedEnvironment) -> String {
     let duration = match planned.plan.duration {
         Some(seconds) => format!("{} s", fixed(seconds, 2)),
         None => "duration unknown until it runs: values marked ? depend on sensors".to_owned(),
@@ -166,7 +167,7 @@ fn indented(text: &str, columns: usize) -> String {
 }
 
 /// The rows of a robot: its start, its movements, and the actions of each.
-fn rows(planned: &Planned, robot: &str, path: &RobotPath) -> Vec<Row> {
+fn rows(planned: &PlannedEnvironment, robot: &str, path: &RobotPath) -> Vec<Row> {
     let row = |what: String, at: String, pose: Pose, rates: String| {
         [what, at, fixed(pose.x, 3), fixed(pose.y, 3), heading(pose.theta), rates]
     };
@@ -202,7 +203,7 @@ fn rows(planned: &Planned, robot: &str, path: &RobotPath) -> Vec<Row> {
 }
 
 /// A collision in a sentence.
-fn meeting(planned: &Planned, collision: &Collision) -> String {
+fn meeting(planned: &PlannedEnvironment, collision: &Collision) -> String {
     let (movement, action) = planned.words(collision.action, &collision.place);
     let time = collision.time.map_or_else(String::new, |time| format!(" after {} s", fixed(time, 2)));
     let (x, y) = (fixed(collision.pose.x, 3), fixed(collision.pose.y, 3));
@@ -313,13 +314,13 @@ struct JsonPose<'a> {
     theta: f64,
 }
 
-fn json(plans: &[Planned]) -> Result<String, Failure> {
+fn json(plans: &[PlannedEnvironment]) -> Result<String, Failure> {
     let plans: Vec<JsonPlan> = plans.iter().map(json_plan).collect();
     let text = serde_json::to_string_pretty(&plans);
     Ok(text.map_err(|error| Failure::new(format!("cannot write JSON: {error}")))? + "\n")
 }
 
-fn json_plan(planned: &Planned) -> JsonPlan<'_> {
+fn json_plan(planned: &PlannedEnvironment) -> JsonPlan<'_> {
     let robots = planned.environment.robots.iter().zip(&planned.plan.robots);
     let poses = |legs: &[Leg]| legs.iter().map(|leg| json_pose(planned, leg)).collect();
     let robots = robots.map(|(robot, path)| JsonRobot {
@@ -340,7 +341,7 @@ fn json_plan(planned: &Planned) -> JsonPlan<'_> {
     }
 }
 
-fn json_collision<'a>(planned: &'a Planned, collision: &Collision) -> JsonCollision<'a> {
+fn json_collision<'a>(planned: &'a PlannedEnvironment, collision: &Collision) -> JsonCollision<'a> {
     let name = object_name(&planned.scene, collision.with);
     let with = match collision.with {
         SceneObject::Obstacle(_) => JsonCollisionTarget::Obstacle(name),
@@ -352,12 +353,12 @@ fn json_collision<'a>(planned: &'a Planned, collision: &Collision) -> JsonCollis
     JsonCollision { robot, action, t: collision.time, x, y, theta, with }
 }
 
-fn json_pose<'a>(planned: &'a Planned, leg: &Leg) -> JsonPose<'a> {
+fn json_pose<'a>(planned: &'a PlannedEnvironment, leg: &Leg) -> JsonPose<'a> {
     let action = json_action(planned, leg.index, &leg.place);
     JsonPose { action, t: leg.end(), x: leg.to.x, y: leg.to.y, theta: leg.to.theta }
 }
 
-fn json_action<'a>(planned: &'a Planned, index: ActionIndex, place: &Place) -> JsonAction<'a> {
+fn json_action<'a>(planned: &'a PlannedEnvironment, index: ActionIndex, place: &Place) -> JsonAction<'a> {
     let before = planned.environment.schedule.iter().take(index.group).map(Vec::len).sum::<usize>();
     let found = planned.environment.place(index, place);
     let calls = found.iter().flat_map(|found| &found.calls);
@@ -386,7 +387,9 @@ mod tests {
         let file = database.open("x.pyr", program);
         let environment = database.environment(database.environments(file)[0].0).unwrap();
         let scene = scene(&environment);
-        let Ok(mut planned) = Planned::new(environment, scene) else { panic!("it can be planned") };
+        let Ok(mut planned) = PlannedEnvironment::new(environment, scene) else {
+            panic!("it can be planned")
+        };
         for truncated in [None, Some(Value::Bool(true))] {
             planned.plan.robots[0].truncated = truncated.is_some();
             let Ok(text) = json(std::slice::from_ref(&planned)) else { panic!("it can be written") };
