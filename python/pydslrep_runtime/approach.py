@@ -59,7 +59,7 @@ class Approach:
         self._usual = math.nan  # s of a step that the two following are for
         self._closing_rate = self._braking_way = math.nan
         self._nearest = math.inf
-        self._least_progress = min(0.001, 0.25 * top_speed * STALL_TIME)
+        self._min_progress = min(0.001, 0.25 * top_speed * STALL_TIME)
         self._progress_time = self._crawl_time = math.nan
 
     def next_speed(self, remaining: float) -> float:
@@ -152,7 +152,7 @@ class Approach:
     def progresses(self, remaining: float, time: float) -> bool:
         """Whether the robot comes nearer and does not crawl, at a simulation time in seconds."""
         distance = abs(remaining)
-        if distance < self._nearest - self._least_progress:
+        if distance < self._nearest - self._min_progress:
             self._nearest, self._progress_time = distance, time
             return time <= self._crawl_time
         return False

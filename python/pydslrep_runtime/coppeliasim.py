@@ -11,7 +11,6 @@ from .backend import Backend, RobotSpec, SensorCone
 from .errors import SetupError, SimulatorError
 from .mounting import MAX_MISALIGNMENT, Mounting, angle_to_left, angle_to_vertical
 from .notes import Notes, pause
-from .patience import PAUSED, Patience
 from .pose import Pose
 from .readings import TIME, check, check_time
 from .remote_api import (
@@ -29,6 +28,7 @@ from .settings import (
     STANDSTILL_CHECKS,
     STOP_TIMEOUT,
 )
+from .wait_policy import PAUSED, WaitPolicy
 
 DEFAULT_PORT = 23000  # of the ZeroMQ remote API
 LEGACY_PORT = 19999  # of the legacy remote API
@@ -59,7 +59,7 @@ class CoppeliaSim:
         self._checked_time = 0.0  # what the simulator said last
         self._checked_steps = self._standstills = 0
         self.is_doubtful = False  # whether the latest step may have taken no time
-        self._patience: dict[Connection, Patience] = {}
+        self._wait_policies: dict[Connection, WaitPolicy] = {}
 
     def connect(self, spec: RobotSpec) -> Backend:
         """Connects a robot; raises SetupError."""
@@ -112,8 +112,8 @@ class CoppeliaSim:
         self._last_step = time.monotonic()
         self.time_step = first.call(first.sim.getSimulationTimeStep)
         for connection in self._connections.values():
-            patience = self._patience[connection] = Patience(connection.address)
-            connection.be_patient(patience.wait, PROBE_PERIOD)
+            policy = self._wait_policies[connection] = WaitPolicy(connection.address)
+            connection.call_on_silence(policy.wait, PROBE_PERIOD)
         if self._is_stopped():
             self._has_started = True
             first.call(first.sim.startSimulation)
@@ -210,7 +210,7 @@ class CoppeliaSim:
     def _wait_while_paused(self) -> None:
         first = self._first()
         while (state := first.call(first.sim.getSimulationState)) == PAUSED:
-            self._patience[first].say_paused()
+            self._wait_policies[first].say_paused()
             pause()
         if state == first.sim.simulation_stopped:
             raise SimulatorError("the simulation was stopped")

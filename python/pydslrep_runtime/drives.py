@@ -171,7 +171,7 @@ class FourWheelDrive(SteeredDrive):
         return (right - left) / 2.0 / self.track
 
 
-class FourMecanumDrive:
+class MecanumDrive:
     """Four mecanum wheels: left-front, left-rear, right-front, right-rear.
 
     Seen from above their rollers form an X, so the robot can also move sideways.

@@ -196,7 +196,7 @@ def reporter(target: str | None) -> Iterator[Reporter]:
 
 
 def standard_output() -> TextIO:
-    """Standard output, for events alone: what is printed besides goes to standard error, whoever prints it."""
+    """Standard output, for events alone: anything else that the process prints goes to standard error."""
     sys.stdout.flush()
     own = os.dup(1)
     os.dup2(2, 1)

@@ -64,7 +64,7 @@ ROBOT_TYPES: dict[TypeName, RobotType] = {
     ),
     "fwh": RobotType(
         robot="MecanumRobot",
-        drive="FourMecanumDrive",
+        drive="MecanumDrive",
         wheels=("left_front", "left_rear", "right_front", "right_rear"),
         pushes=(-1.0, 1.0, 1.0, -1.0),
         mecanum=True,

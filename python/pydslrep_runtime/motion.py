@@ -9,7 +9,6 @@ from .approach import Approach, Brake
 from .backend import Backend, RobotSpec
 from .circles import Circle
 from .conditions import Condition, Watch
-from .creep import Creep
 from .drives import Drive
 from .errors import MovementError
 from .event_loop import SimulationLoop
@@ -28,6 +27,7 @@ from .settings import (
     MAX_IDLE_ROUNDS,
     STALL_TIME,
 )
+from .slip_compensation import SlipCompensation
 from .steering import Drift
 from .trace import Trace
 
@@ -106,7 +106,7 @@ class Motion:
         self._rates: Sequence[float] = ()
         self._odometer: Odometer | None = None
         self._on_pose: Callable[[Pose], object] | None = None
-        self._drift, self._creep = Drift(), Creep()
+        self._drift, self._slip = Drift(), SlipCompensation()
         self._scrub = Scrub(drive.rims_per_radian / drive.turning_radius)
         # Known from the start on, when the clock knows it.
         self._steps: Pace | None = None
@@ -180,7 +180,7 @@ class Motion:
 
     async def step(self, rates: Sequence[float]) -> Pose:
         """Sets the wheels' rates in rad/s, waits for the next step, and returns the pose."""
-        backend, gain = self.backend, self._creep.gain
+        backend, gain = self.backend, self._slip.gain
         if gain != 1.0:
             rates = [rate * gain for rate in rates]
         self._rates = rates
@@ -358,9 +358,11 @@ class Motion:
                 break
             ahead = brake.next_speed(approach, here, remaining)
             # On a line, wheels slide sideways too little to count on it.
-            rates = self.drive.follow(ahead, offset, remaining, 0.0, self._scrub.least)
+            rates = self.drive.follow(
+                ahead, offset, remaining, 0.0, self._scrub.min_factor
+            )
             there = await self.step(rates)
-            self._creep.observe(ahead, there.ahead_of(here), self._elapsed)
+            self._slip.observe(ahead, there.ahead_of(here), self._elapsed)
             here = there
         if brake.is_on:
             here = await self._come_to_rest(here)
@@ -388,7 +390,7 @@ class Motion:
             here = await self._follow(here, ahead, offset, to_go, curvature)
             before, turned = turned, circle.angle_at(here, turned)
             moved = (turned - before) / curvature
-            self._creep.observe(ahead, moved, self._elapsed)
+            self._slip.observe(ahead, moved, self._elapsed)
         return here, turned
 
     def _way_of_rims(self, curvature: float) -> float:
@@ -465,7 +467,7 @@ class Motion:
             self._drift.observe(before, here)
             if not self.drive.scrubs:
                 moved = step * radius
-                self._creep.observe(rim_speed, moved, self._elapsed)
+                self._slip.observe(rim_speed, moved, self._elapsed)
             if self._on_pose is not None:
                 self._on_pose(here)
         here = await self._come_to_rest(here)

@@ -46,7 +46,7 @@ class Movement:
         self._code = code
         self._robot: object = None  # that it drives
         self._counts: Counter[object] = Counter()  # of actions so far, by robot
-        # Whoever runs a loop holds it: when that ends, for whatever reason, it is gone.
+        # Weak: only the code that runs a loop holds it, so it is gone when that code ends for any reason.
         self._loops: list[weakref.ref[Loop]] = []
 
     def called_by(self, frame: FrameType | None) -> bool:

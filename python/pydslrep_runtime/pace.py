@@ -2,7 +2,7 @@
 
 # The share of a step's weight in the usual one that remains after another step.
 MEMORY = 0.9
-LONGEST = 2.0  # usual steps that one may take; what takes longer was a pause
+MAX_STEP = 2.0  # usual steps; a step that takes longer contains a pause
 
 
 class Pace:
@@ -19,6 +19,6 @@ class Pace:
         """Adds a step, in seconds."""
         if elapsed == self.last == self.usual:
             return
-        self.last = min(max(elapsed, 0.0), LONGEST * self.usual)
+        self.last = min(max(elapsed, 0.0), MAX_STEP * self.usual)
         if self.last > 0.0:
             self.usual += (1.0 - MEMORY) * (self.last - self.usual)

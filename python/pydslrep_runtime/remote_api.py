@@ -130,11 +130,11 @@ def accepts_connections(address: str) -> bool:
     return True
 
 
-class PatientSocket:
+class TimeoutSocket:
     """Replaces the client's socket, which allows one request at a time and waits forever for its reply.
 
-    A call may take any number of messages, but hardly longer than the limit: then `on_silence` is told how many seconds
-    the call has taken. It raises SimulatorError, or returns to go on waiting.
+    A call may take any number of messages. When it takes longer than the limit, `on_silence` gets the seconds that the call
+    has taken so far; it raises SimulatorError, or returns to go on waiting for as long again.
     """
 
     def __init__(self, client: Any, address: str, limit: float) -> None:
@@ -150,8 +150,8 @@ class PatientSocket:
         self.limit = limit
 
     @contextmanager
-    def impatient(self) -> Iterator[None]:
-        """Meanwhile, gives up after STOP_TIMEOUT."""
+    def short_timeout(self) -> Iterator[None]:
+        """Within this context, calls fail after STOP_TIMEOUT without a reply."""
         before = self.limit, self.on_silence
         self.limit, self.on_silence = STOP_TIMEOUT, self._give_up
         try:
@@ -285,7 +285,7 @@ class Connection:
             self._client.timeout = CLIENT_TIMEOUT
             # The client's own would run any function of the script that the simulator names.
             self._client.call = self._call_of_client
-            self._socket = PatientSocket(self._client, self.address, CONNECT_TIMEOUT)
+            self._socket = TimeoutSocket(self._client, self.address, CONNECT_TIMEOUT)
         except zmq.ZMQError as error:
             raise self._loss(error) from error
         functions = self.call(self._client.require, "sim")
@@ -311,7 +311,7 @@ class Connection:
         return result
 
     def _call_of_client(self, function: str, arguments: Sequence[Any]) -> Any:
-        """What the client calls a function with."""
+        """Calls a function for the client."""
         # The client adds to its first request what the simulator has to know of it.
         self._client._send({"func": function, "args": list(arguments)})
         request = Request(function, self._encode(function, *arguments))
@@ -329,7 +329,9 @@ class Connection:
                 raise  # the connection failed, not the function
             return None
 
-    def be_patient(self, on_silence: Callable[[float], object], period: float) -> None:
+    def call_on_silence(
+        self, on_silence: Callable[[float], object], period: float
+    ) -> None:
         """From now on, `on_silence` decides every `period` seconds whether to go on waiting for a reply."""
         self._socket.on_silence, self._socket.limit = on_silence, period
 
@@ -364,7 +366,7 @@ class Connection:
             return results
         try:
             self._renew_socket()
-            with self._socket.impatient():
+            with self._socket.short_timeout():
                 self.finish()
                 requests = [
                     self._post(function, request_of(client, function, arguments))
@@ -387,7 +389,7 @@ class Connection:
         while self._under_way:
             self._under_way.popleft().reply = {"err": "interrupted"}
         try:
-            self._socket = PatientSocket(self._client, self.address, STOP_TIMEOUT)
+            self._socket = TimeoutSocket(self._client, self.address, STOP_TIMEOUT)
         except SimulatorError:
             self.is_lost = True
             raise

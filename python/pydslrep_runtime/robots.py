@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, ClassVar, Literal
 from . import events
 from .backend import Backend, RobotSpec
 from .conditions import Condition, Watch
-from .drives import Drive, DriveType, FourMecanumDrive, FourWheelDrive, TwoWheelDrive
+from .drives import Drive, DriveType, FourWheelDrive, MecanumDrive, TwoWheelDrive
 from .errors import SetupError, SimulatorError
 from .event_loop import SimulationLoop
 from .facts import RIM_SPEED, ROBOT_TYPES, TypeName
@@ -436,4 +436,4 @@ class FourWheelRobot(Robot):
 class MecanumRobot(FourWheelRobot):
     """A robot with four mecanum wheels; seen from above, their rollers form an X."""
 
-    drive_type = FourMecanumDrive
+    drive_type = MecanumDrive

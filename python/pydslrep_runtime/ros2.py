@@ -81,12 +81,12 @@ class Heard:
 class Ros2:
     """A node for all robots of a script, and their clock."""
 
-    def __init__(self, *, sim_time: bool, patience: float = SILENCE_LIMIT) -> None:
+    def __init__(self, *, sim_time: bool, timeout: float = SILENCE_LIMIT) -> None:
         """With `sim_time`, time is that of the topic /clock, else real time. Raises SetupError.
 
-        The topic may stand still for `patience` seconds of real time.
+        The topic may stand still for `timeout` seconds of real time.
         """
-        self._patience = patience
+        self._timeout = timeout
         self.time, self.time_step = 0.0, STEP
         self.link = Link("pydslrep")
         self._robots: list[Ros2Robot] = []
@@ -186,8 +186,8 @@ class Ros2:
                 raise SimulatorError(
                     f"nobody publishes {CLOCK} any more: the simulation has ended"
                 )
-            if now > began + self._patience:
-                raise SimulatorError(f"{CLOCK} stands still, for {self._patience:g} s")
+            if now > began + self._timeout:
+                raise SimulatorError(f"{CLOCK} stands still, for {self._timeout:g} s")
             if now > began + PROBE_PERIOD:
                 self._notes.say_paused()
 

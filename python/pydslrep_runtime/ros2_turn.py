@@ -23,7 +23,7 @@ def measure_turn(spec: RobotSpec, *, is_simulated: bool) -> tuple[str, list[Find
 
     Raises SetupError and SimulatorError, after having stopped it.
     """
-    ros = Ros2(sim_time=is_simulated, patience=REPLY_TIMEOUT)
+    ros = Ros2(sim_time=is_simulated, timeout=REPLY_TIMEOUT)
     try:
         robot = ros.connect(spec)
         ros.start()

@@ -1,6 +1,6 @@
 """How much less a robot turns than its wheels roll, as observed while it drives along circles."""
 
-MOST = 4.0  # times the rate at which wheels that do not slide would turn it, at most
+MAX_SCRUB = 4.0  # how many times less a robot turns than its wheels roll
 DOUBT = 1e-4  # rad² of observed steps at which half of what is observed is believed
 MEMORY = 0.99  # the share of a step's weight that remains after another one
 
@@ -13,15 +13,15 @@ class Scrub:
 
     def __init__(self, expected: float) -> None:
         """`expected` is how much less a robot with its wheels should turn than they roll."""
-        self.least = 1.0 / expected
-        """Of the factor: that of wheels that do not slide."""
-        self._most = MOST / expected
+        self.min_factor = 1.0 / expected
+        """The minimum of `factor`: that of wheels that do not slide."""
+        self._max_factor = MAX_SCRUB / expected
         self._asked = self._turned = DOUBT
 
     @property
     def factor(self) -> float:
         """How much wider its track seems than is expected; 1 before there is evidence."""
-        return min(max(self._asked / self._turned, self.least), self._most)
+        return min(max(self._asked / self._turned, self.min_factor), self._max_factor)
 
     def observe(self, asked: float, turned: float) -> None:
         """Adds a step in which the wheels' rates should have turned the robot by radians, and by how much it has turned."""
@@ -29,4 +29,4 @@ class Scrub:
         self._asked = DOUBT + MEMORY * (self._asked - DOUBT) + asked**2
         self._turned = DOUBT + MEMORY * (self._turned - DOUBT) + asked * turned
         # A robot that is pushed around has not scrubbed.
-        self._turned = max(self._turned, self._asked / self._most)
+        self._turned = max(self._turned, self._asked / self._max_factor)

@@ -45,7 +45,7 @@ class FakeRobot:
     theta: float = 0.0
     motor_acceleration: float = 40.0  # rad/s²
     slip: float = 0.0  # standard deviation of each wheel's traction
-    creep: float = 0.0  # how much less it moves than its wheels roll
+    mean_slip: float = 0.0  # how much less it moves than its wheels roll
     # How much less it turns than its wheels roll; None for as much as four plain wheels with full friction.
     scrub: float | None = None
     drift: float = 0.0  # m that it slides to its left per radian that it turns
@@ -69,7 +69,7 @@ class FakeRobot:
     def advance(self, dt: float, noise: random.Random) -> None:
         """Moves for dt seconds."""
         traction = [
-            1.0 - self.creep + (noise.gauss(0.0, self.slip) if self.slip else 0.0)
+            1.0 - self.mean_slip + (noise.gauss(0.0, self.slip) if self.slip else 0.0)
             for _ in self.joints
         ]
         if self.x > self.edge:

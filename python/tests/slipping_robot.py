@@ -6,14 +6,14 @@ from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
 
-from ideal_rover import HALF, MOUNTS, RADIUS, IdealRover, at_once, on
+from ideal_robot import HALF, MOUNTS, RADIUS, IdealRobot, at_once, on
 from pydslrep_runtime.backend import SensorCone
 from pydslrep_runtime.errors import MovementError
 from pydslrep_runtime.facts import RIM_SPEED
 from pydslrep_runtime.pose import Pose, wrap_angle
 from pydslrep_runtime.slam.occupancy_grid import OccupancyGrid, Position, Reading
 from pydslrep_runtime.slam.odometry.odometer import Odometer
-from pydslrep_runtime.slam.odometry.rover import OdometryRover
+from pydslrep_runtime.slam.odometry.robot import OdometrySlamRobot
 from pydslrep_runtime.slam.odometry.scan import Scan
 from rooms import Rooms
 
@@ -25,7 +25,7 @@ WHEEL = 0.05  # m, the radius
 
 
 class SlippingRobot:
-    """The parts of a robot that the rover uses; `here` is its actual pose."""
+    """The parts of a robot that an `OdometrySlamRobot` uses; `here` is its actual pose."""
 
     def __init__(
         self,
@@ -37,7 +37,7 @@ class SlippingRobot:
         track_error: float = 0.0,
         radius_error: float = 0.0,
     ) -> None:
-        self.ideal = IdealRover(rooms, OccupancyGrid(RADIUS))
+        self.ideal = IdealRobot(rooms, OccupancyGrid(RADIUS))
         self.here = Pose(*rooms.start, 0.0)
         self.touched: list[Pose] = []
         # Where something blocks it that no sensor detects.
@@ -143,8 +143,8 @@ class SlippingRobot:
             self.touched.append(here)
 
 
-def rover(robot: SlippingRobot) -> OdometryRover:
-    """The rover of a robot that explores by odometry."""
+def slam_robot(robot: SlippingRobot) -> OdometrySlamRobot:
+    """The robot of an explorer, on this one's wheels and sensors."""
     slam_session: Any = SimpleNamespace(
         uses_odometry=True,
         extent=20.0,
@@ -153,7 +153,7 @@ def rover(robot: SlippingRobot) -> OdometryRover:
         radius=lambda robot, spanned: spanned,
     )
     driving: Any = robot
-    return OdometryRover(driving, slam_session)
+    return OdometrySlamRobot(driving, slam_session)
 
 
 def is_in_body(point: Pose) -> bool:

@@ -4,10 +4,10 @@ import math
 import random
 
 import pytest
-from ideal_rover import at_once
+from ideal_robot import at_once
 from pydslrep_runtime.slam.odometry.calibration import Factor
 from rooms import Pillar, Rooms
-from slipping_robot import SlippingRobot, rover
+from slipping_robot import SlippingRobot, slam_robot
 
 
 def test_a_factor_is_learnt_with_its_uncertainty() -> None:
@@ -46,7 +46,7 @@ def test_exploring_with_another_track_and_other_wheels(error: float) -> None:
     robot = SlippingRobot(
         rooms, 0.02, 0.01, track_error=error, radius_error=-error / 2.0
     )
-    exploring = rover(robot)
+    exploring = slam_robot(robot)
     explorer = exploring.explorer()
     at_once(explorer.explore())
     assert not robot.touched

@@ -6,7 +6,7 @@ import random
 import pytest
 from driving import DRIVES, ROBOTS, joints
 from fake_simulator import FakeRobot
-from pydslrep_runtime.drives import FourMecanumDrive, FourWheelDrive, TwoWheelDrive
+from pydslrep_runtime.drives import FourWheelDrive, MecanumDrive, TwoWheelDrive
 from pydslrep_runtime.errors import SetupError
 from pydslrep_runtime.pose import Pose
 from pydslrep_runtime.steering import (
@@ -53,14 +53,14 @@ def test_four_wheels(v: float, omega: float, _unused: float) -> None:
 @pytest.mark.parametrize(("vx", "vy", "omega"), TWISTS)
 def test_mecanum_wheels(vx: float, vy: float, omega: float) -> None:
     robot = FakeRobot("r", joints("mecanum", track=0.4, wheelbase=0.2))
-    drive = FourMecanumDrive([(j.x, j.y) for j in robot.joints], [0.045] * 4)
+    drive = MecanumDrive([(j.x, j.y) for j in robot.joints], [0.045] * 4)
     assert twist_of(robot, drive.wheel_rates(vx, vy, omega)) == pytest.approx(
         (vx, vy, omega)
     )
 
 
 def test_mecanum_rates_are_those_of_rollers_that_form_an_x() -> None:
-    drive = FourMecanumDrive(
+    drive = MecanumDrive(
         [(0.1, 0.2), (-0.1, 0.2), (0.1, -0.2), (-0.1, -0.2)], [0.05] * 4
     )
     assert drive.wheel_rates(1.0, 0.0, 0.0) == pytest.approx([20.0] * 4)
@@ -78,7 +78,7 @@ def test_wheels_on_the_wrong_side_are_an_error(drive: str) -> None:
 def test_rear_wheels_in_front_are_an_error() -> None:
     mounts = [(-joint.x, joint.y) for joint in joints("mecanum")]
     with pytest.raises(SetupError, match="front"):
-        FourMecanumDrive(mounts, [0.045] * 4)
+        MecanumDrive(mounts, [0.045] * 4)
 
 
 @pytest.mark.parametrize("speed", [0.09, -0.09, 2.0])

@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable
 
 import pytest
-from ideal_rover import RADIUS, IdealRover, at_once
+from ideal_robot import RADIUS, IdealRobot, at_once
 from pydslrep_runtime.pose import Pose
 from pydslrep_runtime.slam.explorer import Explorer, UnboundedAreaError
 from pydslrep_runtime.slam.occupancy_grid import OccupancyGrid
@@ -15,17 +15,17 @@ STEP = 0.5
 
 def explore(
     rooms: Rooms, *surprises: Pillar, extent: float = 20.0
-) -> tuple[IdealRover, Explorer]:
-    rover = IdealRover(rooms, OccupancyGrid(RADIUS))
-    rover.surprises += surprises
-    explorer = Explorer(rover, rover.grid, STEP, math.pi, extent)
+) -> tuple[IdealRobot, Explorer]:
+    robot = IdealRobot(rooms, OccupancyGrid(RADIUS))
+    robot.surprises += surprises
+    explorer = Explorer(robot, robot.grid, STEP, math.pi, extent)
     at_once(explorer.explore())
-    assert not rover.touched
+    assert not robot.touched
     for a, b, length in explorer.map.edges():
         ends = explorer.map.nodes[a].position, explorer.map.nodes[b].position
         assert length == pytest.approx(math.dist(*ends))
         assert rooms.is_straight(*ends)
-    return rover, explorer
+    return robot, explorer
 
 
 def coverage(rooms: Rooms, explorer: Explorer) -> float:
@@ -64,10 +64,10 @@ def test_a_narrow_door_is_found_from_nodes_beside_it(low: float, start: float) -
     # A robot that is unsure of its pose keeps 5 cm more: few ways lead through.
     rooms = Rooms(4.0, 2.5, start=(start, 0.5))
     rooms.walls = [Wall((2.0, 0.0), (2.0, low)), Wall((2.0, low + 0.74), (2.0, 2.5))]
-    rover = IdealRover(rooms, OccupancyGrid(RADIUS + 0.05))
-    explorer = Explorer(rover, rover.grid, STEP, math.pi, 20.0, prefers_walls=True)
+    robot = IdealRobot(rooms, OccupancyGrid(RADIUS + 0.05))
+    explorer = Explorer(robot, robot.grid, STEP, math.pi, 20.0, prefers_walls=True)
     at_once(explorer.explore())
-    assert not rover.touched
+    assert not robot.touched
     assert coverage(rooms, explorer) > 0.99
 
 
@@ -105,7 +105,7 @@ def test_an_obstacle_blocks_one_path_only() -> None:
     assert len(explorer.map.nodes) < 2 * len(without.map.nodes)
 
 
-class Kidnapped(IdealRover):
+class Kidnapped(IdealRobot):
     """Is somewhere else after a scan, once, and knows it."""
 
     def __init__(self, rooms: Rooms, number: int, to: Position) -> None:
@@ -125,17 +125,17 @@ class Kidnapped(IdealRover):
 @pytest.mark.parametrize("number", [22, 28, 34])
 def test_a_robot_that_was_lost_goes_on_where_it_is(number: int) -> None:
     rooms = two_rooms(0.9)
-    rover = Kidnapped(rooms, number, rooms.start)
-    explorer = Explorer(rover, rover.grid, STEP, math.pi, 20.0)
+    robot = Kidnapped(rooms, number, rooms.start)
+    explorer = Explorer(robot, robot.grid, STEP, math.pi, 20.0)
     at_once(explorer.explore())
-    assert not rover.touched
+    assert not robot.touched
     assert coverage(rooms, explorer) >= 0.95
     nodes = explorer.map.nodes
     for a, b, _ in explorer.map.edges():
         assert rooms.is_straight(nodes[a].position, nodes[b].position)
 
 
-class Mistaken(IdealRover):
+class Mistaken(IdealRobot):
     """Mistakes a door for an obstacle, twice."""
 
     missed = 0
@@ -152,16 +152,16 @@ def test_a_robot_that_localises_by_walls_tries_a_door_again(
     prefers_walls: bool,
 ) -> None:
     rooms = two_rooms(0.9)
-    rover = Mistaken(rooms, OccupancyGrid(RADIUS))
+    robot = Mistaken(rooms, OccupancyGrid(RADIUS))
     explorer = Explorer(
-        rover, rover.grid, STEP, math.pi, 20.0, prefers_walls=prefers_walls
+        robot, robot.grid, STEP, math.pi, 20.0, prefers_walls=prefers_walls
     )
     at_once(explorer.explore())
-    assert rover.missed
+    assert robot.missed
     assert (coverage(rooms, explorer) >= 0.95) == prefers_walls
 
 
-class Misled(IdealRover):
+class Misled(IdealRobot):
     """Is stopped by a wall in which its grid has holes."""
 
     def __init__(self, rooms: Rooms) -> None:
@@ -182,12 +182,12 @@ class Misled(IdealRover):
 
 def test_a_robot_gives_up_a_wall_that_it_keeps_bumping_into() -> None:
     # Without its wall, the grid shows a second room.
-    rover = Misled(Rooms(4.0, 2.5, start=(0.6, 0.5)))
-    explorer = Explorer(rover, rover.grid, STEP, math.pi, 20.0, prefers_walls=True)
+    robot = Misled(Rooms(4.0, 2.5, start=(0.6, 0.5)))
+    explorer = Explorer(robot, robot.grid, STEP, math.pi, 20.0, prefers_walls=True)
     at_once(explorer.explore())
-    for place in rover.bumps:
-        assert sum(math.dist(place, bump) < 0.1 for bump in rover.bumps) <= 5
-    assert rover.bumps
+    for place in robot.bumps:
+        assert sum(math.dist(place, bump) < 0.1 for bump in robot.bumps) <= 5
+    assert robot.bumps
     frontiers = [way for node in explorer.map.nodes for way in node.frontiers]
     assert all(way.target is not None for way in frontiers)
 
@@ -213,8 +213,8 @@ def test_an_area_beyond_the_extent_is_an_error() -> None:
 
 def test_a_robot_that_needs_walls_explores_open_space_last() -> None:
     rooms = Rooms(4.4, 4.4, start=(0.5, 0.5))
-    rover = IdealRover(rooms, OccupancyGrid(RADIUS))
-    explorer = Explorer(rover, rover.grid, STEP, math.pi, 20.0, prefers_walls=True)
+    robot = IdealRobot(rooms, OccupancyGrid(RADIUS))
+    explorer = Explorer(robot, robot.grid, STEP, math.pi, 20.0, prefers_walls=True)
     at_once(explorer.explore())
     assert coverage(rooms, explorer) > 0.99
 

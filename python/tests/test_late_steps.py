@@ -5,7 +5,7 @@ import math
 import pytest
 from driving import DRIVES
 from pydslrep_runtime import Robot
-from pydslrep_runtime.pace import LONGEST, Pace
+from pydslrep_runtime.pace import MAX_STEP, Pace
 from stand_in import Physics, StandIn, drive, planned
 
 SQUARE = (("move", 1.0), ("turn", 90.0)) * 4
@@ -46,7 +46,7 @@ def test_a_wait_is_as_long_as_it_should_be(late: float) -> None:
 def test_a_pause_is_no_step() -> None:
     pace = Pace(0.05)
     pace.observe(7.0)
-    assert pace.last == LONGEST * 0.05
+    assert pace.last == MAX_STEP * 0.05
     assert pace.usual < 0.06
     for _ in range(100):
         pace.observe(0.05)

@@ -195,7 +195,7 @@ def test_a_simulator_that_dies_is_noticed_at_once(
 def test_nobody_waits_for_the_reply_of_a_dead_simulator(connection: Connection) -> None:
     with zmq.Context() as context, context.socket(zmq.ROUTER) as silent:
         port = silent.bind_to_random_port("tcp://127.0.0.1")
-        socket = remote_api.PatientSocket(connection._client, f"127.0.0.1:{port}", 5.0)
+        socket = remote_api.TimeoutSocket(connection._client, f"127.0.0.1:{port}", 5.0)
         socket.limit = 1e9
         socket.begin()
         socket.send(b"drive")
@@ -294,7 +294,7 @@ def test_a_patient_call_waits_as_long_as_it_is_told_to(
             may_reply.set()
 
     server.answer = answer
-    connection.be_patient(on_silence, 0.05)
+    connection.call_on_silence(on_silence, 0.05)
     assert connection.result(connection.post("sim.echo", 1)) == 1
     assert len(waits) >= 3
     assert waits == sorted(waits)

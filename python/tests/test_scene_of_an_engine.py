@@ -70,7 +70,7 @@ def test_a_robot_that_crawls_says_so_once(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     drive_alone(
-        FakeWorld(two_wheels(creep=0.9)), monkeypatch, "two-wheel", move_a_metre
+        FakeWorld(two_wheels(mean_slip=0.9)), monkeypatch, "two-wheel", move_a_metre
     )
     assert capsys.readouterr().err == (
         "note: robot r, movement m, action 1: move 1 m: takes more than twice as long as planned; something may brake "

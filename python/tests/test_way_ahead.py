@@ -2,13 +2,13 @@
 
 import math
 
-from ideal_rover import RADIUS, at_once
+from ideal_robot import RADIUS, at_once
 from pydslrep_runtime.pose import Pose
 from pydslrep_runtime.slam.occupancy_grid import Reading
-from pydslrep_runtime.slam.odometry.rover import OdometryRover
+from pydslrep_runtime.slam.odometry.robot import OdometrySlamRobot
 from pydslrep_runtime.slam.odometry.way_ahead import WayAhead
 from rooms import Rooms, Wall
-from slipping_robot import SlippingRobot, rover
+from slipping_robot import SlippingRobot, slam_robot
 
 AHEAD = Pose(0.15, 0.0, 0.0)
 START = Pose(0.0, 0.0, 0.0)
@@ -19,9 +19,9 @@ def seen(distance: float, *, is_hit: bool = True) -> Reading:
     return Reading(AHEAD, math.radians(20.0), distance, is_hit)
 
 
-def looking_ahead(robot: SlippingRobot) -> OdometryRover:
-    """A rover that has made its first scan and looks along the x axis."""
-    exploring = rover(robot)
+def looking_ahead(robot: SlippingRobot) -> OdometrySlamRobot:
+    """A robot that has made its first scan and looks along the x axis."""
+    exploring = slam_robot(robot)
     at_once(exploring.localise())
     at_once(exploring.turn_by(-exploring.pose().theta))
     return exploring

@@ -5,7 +5,7 @@
 
 All servers run in parallel and take turns for each figure, so that other load on the machine affects all of them equally.
 Times are medians in milliseconds; with two servers, the last column is the first one's time divided by the second one's.
-On a busy machine, `--processor` gives steadier figures: what the servers run for each step, whoever else runs in between.
+On a busy machine, `--processor` gives steadier figures: the processor time of the servers for each step, without that of other processes.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 SECONDS_PER_FIGURE = 6.0
-FEWEST = 3
+MIN_SAMPLES = 3
 COLD = "cold start"
 MEMORY = "peak memory, MiB"
 
@@ -112,7 +112,7 @@ def arguments() -> argparse.Namespace:
 def cold(command: list[str], options: argparse.Namespace) -> float:
     """Milliseconds from the start of a process to the first diagnostics."""
     samples = []
-    for _ in range(FEWEST):
+    for _ in range(MIN_SAMPLES):
         with Client(command) as client:
             client.open(program(100).text)
             _, arrived = client.settled([])
@@ -148,11 +148,11 @@ def median(bench: Bench, name: str, options: argparse.Namespace) -> float | None
     taken: list[float] = []
     began = time.perf_counter()
     # Every edit is undone by the next step, so the number of steps is even.
-    while len(taken) < max(options.samples, FEWEST + 1) or len(taken) % 2:
+    while len(taken) < max(options.samples, MIN_SAMPLES + 1) or len(taken) % 2:
         taken.append(processor_time(bench, step) if options.processor else step(bench))
         if (
             time.perf_counter() - began > SECONDS_PER_FIGURE
-            and len(taken) > FEWEST
+            and len(taken) > MIN_SAMPLES
             and not len(taken) % 2
         ):
             break

@@ -33,14 +33,14 @@ CAPABILITIES = {
     },
 }
 
-LONGEST_WAIT = 120.0
+MAX_WAIT = 120.0
 
 
 class Client:
     """A running server."""
 
-    def __init__(self, command: list[str], longest_wait: float = LONGEST_WAIT) -> None:
-        self.longest_wait = longest_wait
+    def __init__(self, command: list[str], max_wait: float = MAX_WAIT) -> None:
+        self.max_wait = max_wait
         self.began = time.perf_counter()
         self.process = subprocess.Popen(
             command,
@@ -167,7 +167,7 @@ class Client:
 
     def receive(self) -> tuple[dict[str, Any], float]:
         """The next message, and the time when it was complete; requests are answered."""
-        arrived, body = self.arrived.get(timeout=self.longest_wait)
+        arrived, body = self.arrived.get(timeout=self.max_wait)
         if body is None:
             raise RuntimeError("the server exited")
         message: dict[str, Any] = json.loads(body)

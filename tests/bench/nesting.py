@@ -43,7 +43,7 @@ OPENS, CLOSES = (0, 3), (7, 10)
 EDITS = {"syntax error": ("meters", 5), "broken reference": ("until { front", 13)}
 """What a line has whose character at that place is taken away and typed again."""
 # Words of a block that is worth opening: an empty one has a warning.
-LEAST = 20
+MIN_WORDS = 20
 FEW, MANY = 50, 250
 SLOW = 600.0  # s
 
@@ -70,7 +70,7 @@ def nested(size: int) -> str:
         left = size - words(" ".join(lines)) - depth + 1
         if left <= 0:
             break
-        if number % 12 in OPENS and depth <= len(BLOCKS) and left > LEAST:
+        if number % 12 in OPENS and depth <= len(BLOCKS) and left > MIN_WORDS:
             lines.append(f"{'  ' * depth}{BLOCKS[depth - 1]}\n")
             depth += 1
         elif number % 12 in CLOSES and depth > 1:
@@ -88,7 +88,7 @@ def instructions(server: pathlib.Path, text: str, edit: str, keys: int) -> int:
         log = pathlib.Path(folder, "log")
         valgrind = ["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null"]
         command = [*valgrind, f"--log-file={log}", str(server.resolve()), "--stdio"]
-        client = Client(command, longest_wait=SLOW)
+        client = Client(command, max_wait=SLOW)
         client.open(text)
         type_keys(client, keys, *place_of(text, edit))
         client.ask("shutdown", None)

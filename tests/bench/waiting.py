@@ -11,7 +11,7 @@ import argparse
 import re
 import shlex
 
-from client import LONGEST_WAIT, URI, Client
+from client import MAX_WAIT, URI, Client
 from program import program
 
 DOCUMENT: dict[str, object] = {"textDocument": {"uri": URI}}
@@ -68,7 +68,7 @@ def waiting(
     while not ended:
         ident, started = client.send("textDocument/hover", DOCUMENT | POSITION)
         while True:
-            arrived, body = client.arrived.get(timeout=LONGEST_WAIT)
+            arrived, body = client.arrived.get(timeout=MAX_WAIT)
             answered = id_of(body or b"")
             if answered == slow:
                 ended = arrived

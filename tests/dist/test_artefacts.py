@@ -203,7 +203,7 @@ def test_the_tutorial_works_with_the_wheel(
     session = Session(str(home / "bin" / "pydslrep"), tmp_path / "work", False)
     assert not differences(session)
     assert not list(cache.glob("pydslrep/venv-*")), "it made an environment of its own"
-    # `man` finds them for whoever has the environment's commands on the path.
+    # `man` finds them if the environment's commands are on the path.
     assert (home / "share" / "man" / "man1" / "pydslrep.1").is_file()
 
 

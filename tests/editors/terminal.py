@@ -17,7 +17,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 SIZE = (100, 24)
-PATIENCE = 60.0
+TIMEOUT = 60.0
 SEQUENCE = re.compile(r"\x1b\[([0-9;:]*)m|\x1b\][^\x1b]*\x1b\\|\x1b\(B|[\x0e\x0f]")
 
 BACKGROUND, FOREGROUND = "#1e1e1e", "#d4d4d4"
@@ -88,10 +88,10 @@ class Terminal:
         """The text of the screen."""
         return self._tmux("capture-pane", "-p")
 
-    def wait(self, pattern: str, patience: float = PATIENCE) -> bool:
+    def wait(self, pattern: str, timeout: float = TIMEOUT) -> bool:
         """Waits until a pattern appears; returns whether it does."""
         return self._wait(
-            lambda screen: re.search(pattern, screen) is not None, patience
+            lambda screen: re.search(pattern, screen) is not None, timeout
         )
 
     def wait_without(self, pattern: str) -> bool:
@@ -103,9 +103,9 @@ class Terminal:
         return self._wait(lambda _: is_reached())
 
     def _wait(
-        self, is_reached: Callable[[str], bool], patience: float = PATIENCE
+        self, is_reached: Callable[[str], bool], timeout: float = TIMEOUT
     ) -> bool:
-        until = time.monotonic() + patience
+        until = time.monotonic() + timeout
         while time.monotonic() < until:
             if is_reached(self.screen()):
                 return True

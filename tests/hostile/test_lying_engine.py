@@ -24,8 +24,8 @@ pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="processes' use"
 
 FEW = 15  # lies to each of four
 LIMIT = 120.0  # s, on a slow machine
-MOST_MEMORY = 700 << 20  # bytes
-MOST_OUTPUT = 4000  # characters
+MAX_MEMORY = 700 << 20  # bytes
+MAX_OUTPUT = 4000  # characters
 # Where an engine falls silent, nobody should wait for minutes.
 SHORT = "REPLY_TIMEOUT=2,HOLD_LIMIT=3,SILENCE_LIMIT=3,PROBE_PERIOD=0.5"
 
@@ -218,10 +218,10 @@ def check(lie: Lie, done: Done) -> None:
     assert done.code in (0, 1, 2), f"{lie}: {done}"
     assert "Traceback" not in text, f"{lie}: {text}"
     assert "internal error" not in text, f"{lie}: {text}"
-    assert len(text) < MOST_OUTPUT, f"{lie}: {len(text)} characters"
+    assert len(text) < MAX_OUTPUT, f"{lie}: {len(text)} characters"
     assert not re.search(r"[\x00-\x09\x0b-\x1f\x7f-\x9f]", text), f"{lie}: {text!r}"
     assert not re.search(r"\d{25}", text), f"{lie}: {text}"
-    assert done.memory < MOST_MEMORY, f"{lie}: {done.memory} bytes"
+    assert done.memory < MAX_MEMORY, f"{lie}: {done.memory} bytes"
     errors = re.findall(r"^error(?:\[.*\])?: .*", done.err, re.M)
     if done.code == 2:
         assert len(errors) + done.out.count("error[no-") == 1, f"{lie}: {text}"

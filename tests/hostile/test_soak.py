@@ -21,7 +21,7 @@ pytestmark = pytest.mark.skipif(
 PARTS, FIRST_PARTS = 12, 4
 
 # The most that memory may grow by: bytes an edit, of which each comes with a request.
-MOST_GROWTH = 4096
+MAX_GROWTH = 4096
 
 
 def edit(
@@ -66,7 +66,7 @@ def test_a_long_session(tmp_path: pathlib.Path) -> None:
         talk.server.send(notification("textDocument/didOpen", item(buffer, 1)))
         uses = [spend(talk, buffer, part * edits, edits) for part in range(PARTS)]
     kept = uses[FIRST_PARTS:]
-    assert growth(kept, edits) <= MOST_GROWTH, [use.memory for use in uses]
+    assert growth(kept, edits) <= MAX_GROWTH, [use.memory for use in uses]
     assert kept[-1].files <= kept[0].files
     assert kept[-1].threads <= kept[0].threads
     # Each is typed and deleted again.

@@ -28,7 +28,7 @@ def test_each_error_is_announced_when_its_line_is_left(yard: Yard) -> None:
     reasons, fixes = [], []
     for typed in ("mo", "move 1", "move 1 parsecs"):
         yard.type(program, PROGRAM.replace("move 2 meters", typed))
-        # Whoever leaves the line has typed what there is: until then, the next word may settle it.
+        # The line is complete when the cursor leaves it: until then, the next word may fix the problem.
         top = {
             "textDocument": program.document(),
             "position": {"line": 0, "character": 0},

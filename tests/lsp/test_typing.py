@@ -281,7 +281,7 @@ def test_no_list_opens_at_a_name_that_is_complete(
         assert editor.completions() == ["a", "ab"]
         editor.type("b")
         assert editor.completions() == []
-        # Whoever comes back to a word asks for the list.
+        # When the cursor comes back to a word, the user asks for the list.
         editor.type(" ")
         editor.cursor -= 1
         assert editor.completions()[0] == "ab"

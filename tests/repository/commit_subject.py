@@ -7,7 +7,7 @@ import re
 import sys
 from pathlib import Path
 
-LONGEST = 72
+MAX_LENGTH = 72
 AREA = re.compile(r"[a-z][a-z0-9_-]*(, [a-z][a-z0-9_-]*)*: \S")
 # Git writes these itself, and `git rebase --autosquash` takes the second kind away again.
 BY_GIT = re.compile(r"(Merge|Revert) |(fixup|squash|amend)! ")
@@ -24,8 +24,8 @@ def complaints(message: str) -> list[str]:
         found.append(
             "begin with the area that changes and a colon: `server: answer in order`"
         )
-    if len(subject) > LONGEST:
-        found.append(f"{len(subject)} characters; at most {LONGEST} fit")
+    if len(subject) > MAX_LENGTH:
+        found.append(f"{len(subject)} characters; at most {MAX_LENGTH} fit")
     if subject.endswith("."):
         found.append("leave out the full stop at the end")
     if len(lines) > 1 and lines[1]:

@@ -19,7 +19,7 @@ from rclpy.node import Node
 from rclpy.qos import qos_profile_sensor_data
 from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import Range
-from test_world import PATIENCE, start_world
+from test_world import TIMEOUT, start_world
 from until import until
 
 TYPES = {
@@ -38,7 +38,7 @@ def drive(command: str, program: pathlib.Path, *options: object) -> str:
         ],
         capture_output=True,
         text=True,
-        timeout=PATIENCE,
+        timeout=TIMEOUT,
     )
     assert run.returncode == 0, run.stdout + run.stderr
     return run.stdout

@@ -23,7 +23,7 @@ from rclpy.node import Node
 from rclpy.qos import qos_profile_sensor_data
 from until import until
 
-PATIENCE = 600  # s for a run on a machine that does much else
+TIMEOUT = 600  # s for a run on a machine that does much else
 STANDS = 0.6  # s after its last command within which a robot stands
 # m and degrees by engine, as without ROS 2
 OFF = {"embedded": (0.005, 0.5), "mujoco": (0.02, 1.5)}
@@ -60,7 +60,7 @@ def drive(command: str, start: Start, tmp_path: pathlib.Path) -> Drive:
             ],
             capture_output=True,
             text=True,
-            timeout=PATIENCE,
+            timeout=TIMEOUT,
         )
         assert run.returncode == 0, run.stdout + run.stderr
         return json.loads(figures.read_text(encoding="utf-8"))

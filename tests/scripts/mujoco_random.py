@@ -3,7 +3,7 @@
     .venv/bin/python tests/scripts/mujoco_random.py             # 200 programs
     .venv/bin/python tests/scripts/mujoco_random.py --count 20
 
-Prints programs that miss the aim, and a table: how far apart the actions of each type of robot end, and how much longer programs
+Prints programs that miss the target, and a table: how far apart the actions of each type of robot end, and how much longer programs
 take in MuJoCo. Four plain wheels scrub in turns, so programs with such robots may take 15 % longer instead of 5 %.
 """
 
@@ -47,7 +47,7 @@ class Apart(NamedTuple):
     degrees: float
 
     @property
-    def is_within_aim(self) -> bool:
+    def meets_target(self) -> bool:
         """Whether it may be so far."""
         return self.metres <= POSITION and self.degrees <= HEADING
 
@@ -64,12 +64,12 @@ class Difference(NamedTuple):
     failure: str = ""
 
     @property
-    def is_within_aim(self) -> bool:
+    def meets_target(self) -> bool:
         """Whether the engines agree."""
         most = LATE_SCRUBBING if self.scrubs else LATE
         return (
             not self.failure
-            and all(each.is_within_aim for each in self.actions)
+            and all(each.meets_target for each in self.actions)
             and abs(self.late) <= most
         )
 
@@ -162,7 +162,7 @@ def table(found: list[Difference]) -> Iterator[str]:
                 f"{words} four plain wheels: {len(late)} programs, median {median(late):+.1f} % of the time, "
                 f"{min(late):+.1f} to {max(late):+.1f} %"
             )
-    yield f"{sum(each.is_within_aim for each in found)} of {len(found)} programs within the aim"
+    yield f"{sum(each.meets_target for each in found)} of {len(found)} programs meet the target"
 
 
 def main() -> None:
@@ -176,7 +176,7 @@ def main() -> None:
     found = []
     for seed in range(options.first, options.first + options.count):
         found.append(compare(seed))
-        if not found[-1].is_within_aim:
+        if not found[-1].meets_target:
             print(found[-1], flush=True)
     for line in table(found):
         print(line)

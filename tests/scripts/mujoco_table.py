@@ -1,4 +1,4 @@
-"""Where robots end in MuJoCo, which judges what scripts do about friction, wheels and steps: a table.
+"""Measures how accurately robots drive in MuJoCo, by the friction of the floor, errors of wheels and steps: a table.
 
     .venv/bin/python tests/scripts/mujoco_table.py                                   # everything, which takes hours
     .venv/bin/python tests/scripts/mujoco_table.py table2 crossing --frictions 0.3   # some of it
@@ -38,7 +38,7 @@ DEBUG = pathlib.Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")) / "deb
 COMMAND = os.environ.get("PYDSLREP", str(DEBUG / "pydslrep"))
 
 FRICTIONS, WHEELS, STEPS = (0.8, 0.3, 0.1), (0.0, 2.0, 5.0), (0.05, 0.02, 0.1)
-POSITION, HEADING, LATE = 0.02, 1.5, 0.05  # m, degrees and a share of the time: the aim
+POSITION, HEADING, LATE = 0.02, 1.5, 0.05  # m, degrees, share of the time: targets
 LIMIT = 1200  # s of a run
 
 
@@ -182,12 +182,12 @@ def late(result: dict[str, Any]) -> float:
 
 
 def worst(results: Sequence[dict[str, Any]]) -> str:
-    """A row for each condition: the programs that are the furthest off, and those outside of the aim."""
+    """A row for each condition: the programs that are the furthest off, and those that miss the target."""
     groups: dict[Condition, list[dict[str, Any]]] = {}
     for each in results:
         groups.setdefault(Condition(**each["condition"]), []).append(each)
     lines = [
-        ["condition", "position", "heading", "time", "outside of the aim"],
+        ["condition", "position", "heading", "time", "misses the target"],
         ["---"] * 5,
     ]
     for condition, runs in groups.items():

@@ -33,7 +33,7 @@ simx_return_initialize_error_flag = 64
 simx_headeroffset_server_state = 17
 
 BLOCKING_LIMIT = 5.0  # s
-LONGEST_PACKET = 1300
+MAX_PACKET = 1300
 
 _HEADER = struct.Struct("<HBiiiHB")  # check sum, version, ids and times, scene, state
 _COMMAND = struct.Struct("<iiHiiHiBB")
@@ -103,7 +103,7 @@ class _Connection:
 
 
 def _send(line: socket.socket, message: bytes) -> None:
-    size = LONGEST_PACKET - _PACKET.size
+    size = MAX_PACKET - _PACKET.size
     parts = [message[start : start + size] for start in range(0, len(message), size)]
     for index, part in enumerate(parts):
         line.sendall(_PACKET.pack(1, len(part), len(parts) - 1 - index) + part)

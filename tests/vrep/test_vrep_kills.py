@@ -34,7 +34,7 @@ from until import LIMIT, until
 KILLS = int(os.environ.get("PYDSLREP_KILLS", "6"))
 
 # The number of messages before a script ends: from its first message to the middle of its path.
-MOST_PARTS = 600
+MAX_PARTS = 600
 
 
 class Relay:
@@ -119,7 +119,7 @@ def test_scripts_that_end_at_any_moment(
             how = ("kill", "interrupt", "hang up")[turn % 3]
             with relay(ports[0]) as between:
                 process = start(script, "--port", f"rover={between.port}")
-                between.wait_for(dice.randint(1, MOST_PARTS))
+                between.wait_for(dice.randint(1, MAX_PARTS))
                 assert process.poll() is None, process.communicate()
                 if how == "kill":
                     process.kill()

@@ -47,7 +47,7 @@ pub struct EntityId(u32);
 pub enum Resolution {
     /// This entity; the first of several that bear the name.
     To(EntityId),
-    /// It cannot be said: the name is in text that was not understood, or a file to import is not there.
+    /// Not known: the name is in invalid text, or an imported file is missing.
     Unknown,
     /// Nothing.
     Nothing,
@@ -118,7 +118,7 @@ pub struct Database {
     changed_environments: FxHashMap<(FileId, SmolStr), i32>,
     script_names: ScriptNames,
     /// Entities with problems.
-    troubled: FxHashMap<FileId, FxHashSet<EntityId>>,
+    with_problems: FxHashMap<FileId, FxHashSet<EntityId>>,
     /// Entities with a problem whose fix renames them, also in the files that import theirs.
     renamed: FxHashMap<FileId, FxHashSet<EntityId>>,
     /// Entities whose problems speak of all names of a kind ("did you mean …"), not only of those they use.
@@ -352,8 +352,8 @@ impl Database {
     }
 
     /// Returns the number of entities of a file that have problems.
-    pub fn count_troubled(&self, file: FileId) -> usize {
-        self.troubled.get(&file).map_or(0, FxHashSet::len)
+    pub fn count_with_problems(&self, file: FileId) -> usize {
+        self.with_problems.get(&file).map_or(0, FxHashSet::len)
     }
 
     /// Returns the number of entities of a kind in a file.
@@ -379,11 +379,11 @@ impl Database {
     }
 
     /// The entities of a file that have problems, in the order of the text.
-    pub(crate) fn troubled(&self, file: FileId) -> Vec<EntityRef<'_>> {
-        let troubled = self.troubled.get(&file).into_iter().flatten();
-        let mut troubled: Vec<EntityRef<'_>> = troubled.filter_map(|id| self.entity(*id)).collect();
-        troubled.sort_unstable_by_key(|entity| entity.span.start);
-        troubled
+    pub(crate) fn entities_with_problems(&self, file: FileId) -> Vec<EntityRef<'_>> {
+        let ids = self.with_problems.get(&file).into_iter().flatten();
+        let mut entities: Vec<EntityRef<'_>> = ids.filter_map(|id| self.entity(*id)).collect();
+        entities.sort_unstable_by_key(|entity| entity.span.start);
+        entities
     }
 
     pub(crate) fn problems(&self, id: EntityId) -> &[Problem] {

@@ -12,7 +12,7 @@ pub enum Severity {
     Hint,
     /// Worth knowing.
     Information,
-    /// It runs, but is surely not meant.
+    /// It runs, but is almost certainly unintended.
     Warning,
     /// No script can be generated.
     Error,

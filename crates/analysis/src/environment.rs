@@ -32,7 +32,7 @@ pub struct Environment {
 pub struct ActionPlace<'a> {
     /// The movement that the environment lists.
     pub movement: &'a str,
-    /// The number of its statement ([`Action::number`]) in its own movement, which is the listed one or the last that is done.
+    /// The number of its statement ([`ResolvedAction::number`]) in its own movement, which is the listed one or the last that is done.
     pub number: usize,
     /// The rounds of the repetitions that it is in, from 1, the outermost first.
     pub rounds: Vec<u32>,
@@ -121,18 +121,18 @@ pub struct Movement {
     /// Index into [`Environment::robots`].
     pub robot: usize,
     /// The actions, in order.
-    pub actions: Vec<Action>,
+    pub actions: Vec<ResolvedAction>,
     /// Where it is declared.
     pub source: Source,
 }
 
-/// One statement of a movement.
+/// One statement of a movement, its references and defaults resolved.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Action {
+pub struct ResolvedAction {
     /// Its place in its movement in the order of the text, from 1; statements in blocks count, too, and so do the blocks' own.
     pub number: usize,
     /// The action and its values.
-    pub kind: ActionKind,
+    pub kind: ResolvedActionKind,
     /// The statement as the program writes it, on one line, white space folded, without comments; of one with blocks, what is
     /// before its first block.
     pub text: String,
@@ -142,7 +142,7 @@ pub struct Action {
 
 /// The kind of an action, with its values.
 #[derive(Debug, Clone, PartialEq)]
-pub enum ActionKind {
+pub enum ResolvedActionKind {
     /// Straight ahead along the heading.
     Move {
         /// Metres; negative is backwards. `None`: as far as it takes until the condition holds.
@@ -184,21 +184,21 @@ pub enum ActionKind {
         /// From 1 to 10 000.
         count: u32,
         /// The actions of each round.
-        body: Vec<Action>,
+        body: Vec<ResolvedAction>,
     },
     /// A block, until a condition holds before a round.
     RepeatUntil {
         /// When to end.
         until: Condition,
         /// The actions of each round.
-        body: Vec<Action>,
+        body: Vec<ResolvedAction>,
     },
     /// The block of the first branch whose condition holds.
     If {
         /// In the order of the text; the first is that of the action itself.
         branches: Vec<Branch>,
         /// The actions if no condition holds.
-        otherwise: Vec<Action>,
+        otherwise: Vec<ResolvedAction>,
     },
     /// Another movement of the same robot.
     Do {
@@ -212,13 +212,13 @@ pub enum ActionKind {
 /// An `if`, or an `else if` after it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Branch {
-    /// As [`Action::number`].
+    /// As [`ResolvedAction::number`].
     pub number: usize,
     /// When its block is done.
     pub condition: Condition,
     /// The actions.
-    pub body: Vec<Action>,
-    /// As [`Action::text`].
+    pub body: Vec<ResolvedAction>,
+    /// As [`ResolvedAction::text`].
     pub text: String,
     /// Its span.
     pub source: Source,
@@ -244,41 +244,45 @@ pub struct Condition {
     pub within: Option<f64>,
 }
 
-impl Action {
+impl ResolvedAction {
     /// The actions in its blocks, block by block.
-    pub fn blocks(&self) -> Vec<&[Action]> {
+    pub fn blocks(&self) -> Vec<&[ResolvedAction]> {
         match &self.kind {
-            ActionKind::Repeat { body, .. } | ActionKind::RepeatUntil { body, .. } => vec![body],
-            ActionKind::If { branches, otherwise } => {
+            ResolvedActionKind::Repeat { body, .. } | ResolvedActionKind::RepeatUntil { body, .. } => {
+                vec![body]
+            }
+            ResolvedActionKind::If { branches, otherwise } => {
                 branches.iter().map(|branch| branch.body.as_slice()).chain([otherwise.as_slice()]).collect()
             }
-            ActionKind::Move { .. }
-            | ActionKind::Turn { .. }
-            | ActionKind::TurnUntil { .. }
-            | ActionKind::Wait { .. }
-            | ActionKind::Do { .. }
-            | ActionKind::Slam => Vec::new(),
+            ResolvedActionKind::Move { .. }
+            | ResolvedActionKind::Turn { .. }
+            | ResolvedActionKind::TurnUntil { .. }
+            | ResolvedActionKind::Wait { .. }
+            | ResolvedActionKind::Do { .. }
+            | ResolvedActionKind::Slam => Vec::new(),
         }
     }
 
     /// The conditions that it asks itself.
     pub fn conditions(&self) -> Vec<&Condition> {
         match &self.kind {
-            ActionKind::Move { until, .. }
-            | ActionKind::Turn { until, .. }
-            | ActionKind::Wait { until, .. } => until.iter().collect(),
-            ActionKind::RepeatUntil { until, .. } => vec![until],
-            ActionKind::If { branches, .. } => branches.iter().map(|branch| &branch.condition).collect(),
-            ActionKind::TurnUntil { .. }
-            | ActionKind::Repeat { .. }
-            | ActionKind::Do { .. }
-            | ActionKind::Slam => Vec::new(),
+            ResolvedActionKind::Move { until, .. }
+            | ResolvedActionKind::Turn { until, .. }
+            | ResolvedActionKind::Wait { until, .. } => until.iter().collect(),
+            ResolvedActionKind::RepeatUntil { until, .. } => vec![until],
+            ResolvedActionKind::If { branches, .. } => {
+                branches.iter().map(|branch| &branch.condition).collect()
+            }
+            ResolvedActionKind::TurnUntil { .. }
+            | ResolvedActionKind::Repeat { .. }
+            | ResolvedActionKind::Do { .. }
+            | ResolvedActionKind::Slam => Vec::new(),
         }
     }
 }
 
 /// All actions of a row and of their blocks, in the order of the text.
-pub fn nested(actions: &[Action]) -> Vec<&Action> {
+pub fn nested(actions: &[ResolvedAction]) -> Vec<&ResolvedAction> {
     let mut all = Vec::new();
     let mut open = vec![actions.iter()];
     while let Some(row) = open.last_mut() {
@@ -287,7 +291,7 @@ pub fn nested(actions: &[Action]) -> Vec<&Action> {
             continue;
         };
         all.push(action);
-        open.extend(action.blocks().into_iter().rev().map(<[Action]>::iter));
+        open.extend(action.blocks().into_iter().rev().map(<[ResolvedAction]>::iter));
     }
     all
 }
@@ -296,7 +300,7 @@ impl Movement {
     /// Returns the text and the location of the statement with a number.
     pub fn statement(&self, number: usize) -> Option<(&str, &Source)> {
         nested(&self.actions).into_iter().find_map(|action| {
-            if let ActionKind::If { branches, .. } = &action.kind {
+            if let ResolvedActionKind::If { branches, .. } = &action.kind {
                 let branch = branches.iter().find(|branch| branch.number == number)?;
                 return Some((branch.text.as_str(), &branch.source));
             }

@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use crate::{Database, Diagnostic, Edit, FileId, Fix, Severity, diagnostics};
 
-/// The most steps that trying suggestions may take, each about as long as looking at one problem: as a single suggestion
+/// The maximum number of steps for trying suggestions, each about as long as looking at one problem: as one suggestion
 /// takes longer the more problems a file has, all of them would take the square of their number. It is a second.
-const MOST_STEPS: usize = 4_000_000;
+const MAX_STEPS: usize = 4_000_000;
 
 /// Steps for each entity that is checked again.
 const STEPS_OF_A_CHECK: usize = 64;
@@ -32,7 +32,7 @@ impl<'a> Offers<'a> {
             return true;
         }
         let validator = self.validator.get_or_insert_with(|| FixValidator::new(self.database));
-        if self.left == 0 || validator.steps >= MOST_STEPS {
+        if self.left == 0 || validator.steps >= MAX_STEPS {
             return false;
         }
         self.left -= 1;
@@ -188,7 +188,7 @@ mod tests {
         let offered = problems.iter().filter(|problem| !problem.fixes.is_empty()).count();
         assert!((1..200).contains(&offered), "each renaming asks all 300 again: {offered}");
         let steps = offers.validator.map_or(0, |validator| validator.steps);
-        assert!(steps < MOST_STEPS + MOST_STEPS / 10, "{steps}");
+        assert!(steps < MAX_STEPS + MAX_STEPS / 10, "{steps}");
     }
 
     #[test]

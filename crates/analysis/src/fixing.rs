@@ -9,8 +9,8 @@ use std::hash::{Hash, Hasher};
 use self::patch::Patch;
 use crate::{Database, Diagnostic, Edit, FileId, Fix};
 
-/// Fixes that bring ever new problems come to an end here. Fixes for the same place take a round each.
-const MOST_ROUNDS: usize = 1000;
+/// A limit for fixes that keep causing new problems. Fixes at the same place take a round each.
+const MAX_ROUNDS: usize = 1000;
 
 /// The fixing of some files. The caller reads the problems before each round, so that it can open files that have
 /// become relevant since the last one.
@@ -57,7 +57,7 @@ impl Fixing {
             patch.apply(&in_order(file, &chosen));
             self.before.entry(file).or_insert(text);
         }
-        self.rounds < MOST_ROUNDS
+        self.rounds < MAX_ROUNDS
     }
 
     /// Returns the number of fixed problems of each file that had any.
@@ -241,7 +241,7 @@ mod tests {
         let same = |_: &str, file| vec![problem(file, &[(true, Span::new(0, 1), "a")])];
         assert_eq!(fixed("a", same), ("a".to_owned(), 0));
         let grow = |_: &str, file| vec![problem(file, &[(true, Span::new(0, 0), "a")])];
-        assert_eq!(fixed("", grow).1, MOST_ROUNDS);
+        assert_eq!(fixed("", grow).1, MAX_ROUNDS);
     }
 
     #[test]

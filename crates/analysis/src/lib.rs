@@ -31,7 +31,7 @@ mod target;
 pub use cancellation::{CancellationToken, Cancelled, cancellable, check_cancelled};
 pub use database::{Absence, Database, EditCounts, EntityId, EntityRef, FileId, FileSpan, Resolution};
 pub use diagnostic::{Diagnostic, Edit, Fix, Related, Severity};
-pub use diagnostics::MOST_BLOCKS;
+pub use diagnostics::MAX_BLOCK_DEPTH;
 pub use edition::Edition;
 pub use fix_validator::{FixValidator, Offers};
 pub use fixing::Fixing;

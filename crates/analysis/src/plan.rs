@@ -5,7 +5,9 @@ use pydslrep_scene as scenery;
 
 use kinematics::StepKind;
 
-use crate::environment::{Action, ActionKind, Circle, Condition, Environment, Movement, Robot};
+use crate::environment::{
+    Circle, Condition, Environment, Movement, ResolvedAction, ResolvedActionKind, Robot,
+};
 
 /// The distance that a robot drives until a condition holds, metres: a `move` fails after that, and loops hardly go
 /// farther.
@@ -98,27 +100,29 @@ fn way(environment: &Environment, robot: usize) -> f64 {
     own.filter_map(|index| ways.get(*index)).sum()
 }
 
-fn way_of_all(actions: &[Action], done: &[f64]) -> f64 {
+fn way_of_all(actions: &[ResolvedAction], done: &[f64]) -> f64 {
     actions.iter().map(|action| way_of(action, done)).sum()
 }
 
-fn way_of(action: &Action, done: &[f64]) -> f64 {
+fn way_of(action: &ResolvedAction, done: &[f64]) -> f64 {
     match &action.kind {
-        ActionKind::Move { distance, .. } => distance.map_or(OPEN_ENDED_EXTENT, f64::abs),
-        ActionKind::Turn { degrees, circle: Some(circle), .. } => {
+        ResolvedActionKind::Move { distance, .. } => distance.map_or(OPEN_ENDED_EXTENT, f64::abs),
+        ResolvedActionKind::Turn { degrees, circle: Some(circle), .. } => {
             degrees.unwrap_or(360.0).abs().to_radians() * circle.radius
         }
-        ActionKind::Slam => SLAM_EXTENT,
-        ActionKind::Repeat { count, body } => f64::from(*count) * way_of_all(body, done),
-        ActionKind::RepeatUntil { body, .. } => {
+        ResolvedActionKind::Slam => SLAM_EXTENT,
+        ResolvedActionKind::Repeat { count, body } => f64::from(*count) * way_of_all(body, done),
+        ResolvedActionKind::RepeatUntil { body, .. } => {
             OPEN_ENDED_EXTENT.min(way_of_all(body, done) * *crate::resolve::COUNTS.end())
         }
-        ActionKind::If { branches, otherwise } => {
+        ResolvedActionKind::If { branches, otherwise } => {
             let branches = branches.iter().map(|branch| branch.body.as_slice());
             branches.chain([otherwise.as_slice()]).map(|body| way_of_all(body, done)).fold(0.0, f64::max)
         }
-        ActionKind::Do { movement } => done.get(*movement).copied().unwrap_or_default(),
-        ActionKind::Turn { circle: None, .. } | ActionKind::TurnUntil { .. } | ActionKind::Wait { .. } => 0.0,
+        ResolvedActionKind::Do { movement } => done.get(*movement).copied().unwrap_or_default(),
+        ResolvedActionKind::Turn { circle: None, .. }
+        | ResolvedActionKind::TurnUntil { .. }
+        | ResolvedActionKind::Wait { .. } => 0.0,
     }
 }
 
@@ -190,7 +194,7 @@ impl Driver {
     }
 
     /// The drive of one action, one with blocks as a whole; `None` where only the world decides when it ends.
-    pub fn drive(&self, from: kinematics::Pose, action: &ActionKind) -> Option<kinematics::Leg> {
+    pub fn drive(&self, from: kinematics::Pose, action: &ResolvedActionKind) -> Option<kinematics::Leg> {
         let step = kinematics::Step { number: 0, kind: step_kind(action) };
         let kind = match step.kind {
             StepKind::Repeat { .. } | StepKind::Call { .. } => StepKind::Branch { ways: vec![vec![step]] },
@@ -210,49 +214,52 @@ fn movement_steps(movement: &Movement) -> Vec<kinematics::Step> {
     steps(&movement.actions)
 }
 
-fn steps(actions: &[Action]) -> Vec<kinematics::Step> {
-    let step =
-        |action: &Action| kinematics::Step { number: action.number - 1, kind: step_kind(&action.kind) };
+fn steps(actions: &[ResolvedAction]) -> Vec<kinematics::Step> {
+    let step = |action: &ResolvedAction| kinematics::Step {
+        number: action.number - 1,
+        kind: step_kind(&action.kind),
+    };
     actions.iter().map(step).collect()
 }
 
-fn step_kind(kind: &ActionKind) -> StepKind {
+fn step_kind(kind: &ResolvedActionKind) -> StepKind {
     match kind {
-        ActionKind::Move { distance, speed, until } => {
-            let drive = distance.map(|distance| kinematics::Action::Move { distance, speed: *speed });
+        ResolvedActionKind::Move { distance, speed, until } => {
+            let drive =
+                distance.map(|distance| kinematics::MotionPrimitive::Move { distance, speed: *speed });
             ended(drive, until.as_ref())
         }
-        ActionKind::Turn { left, degrees, circle, speed, until } => {
+        ResolvedActionKind::Turn { left, degrees, circle, speed, until } => {
             let angle = degrees.map(|degrees| if *left { degrees } else { -degrees }.to_radians());
             let turn = |angle| match *circle {
                 Some(Circle { radius, reverse }) => {
-                    kinematics::Action::Arc { angle, radius, speed: *speed, reverse }
+                    kinematics::MotionPrimitive::Arc { angle, radius, speed: *speed, reverse }
                 }
-                None => kinematics::Action::Turn { angle, speed: *speed },
+                None => kinematics::MotionPrimitive::Turn { angle, speed: *speed },
             };
             ended(angle.map(turn), until.as_ref())
         }
-        ActionKind::Wait { seconds, until } => {
-            ended(seconds.map(|seconds| kinematics::Action::Wait { seconds }), until.as_ref())
+        ResolvedActionKind::Wait { seconds, until } => {
+            ended(seconds.map(|seconds| kinematics::MotionPrimitive::Wait { seconds }), until.as_ref())
         }
-        ActionKind::Repeat { count, body } => StepKind::Repeat { count: *count, body: steps(body) },
-        ActionKind::If { branches, otherwise } => {
+        ResolvedActionKind::Repeat { count, body } => StepKind::Repeat { count: *count, body: steps(body) },
+        ResolvedActionKind::If { branches, otherwise } => {
             let branches = branches.iter().map(|branch| steps(&branch.body));
             StepKind::Branch { ways: branches.chain([steps(otherwise)]).collect() }
         }
-        ActionKind::Do { movement } => StepKind::Call { movement: *movement },
-        ActionKind::TurnUntil { .. } | ActionKind::RepeatUntil { .. } | ActionKind::Slam => {
-            StepKind::Action(kinematics::Action::Unknown)
-        }
+        ResolvedActionKind::Do { movement } => StepKind::Call { movement: *movement },
+        ResolvedActionKind::TurnUntil { .. }
+        | ResolvedActionKind::RepeatUntil { .. }
+        | ResolvedActionKind::Slam => StepKind::Action(kinematics::MotionPrimitive::Unknown),
     }
 }
 
 /// An action that a condition may end; without a bound nobody knows how far it leads.
-fn ended(action: Option<kinematics::Action>, until: Option<&Condition>) -> StepKind {
+fn ended(action: Option<kinematics::MotionPrimitive>, until: Option<&Condition>) -> StepKind {
     match (action, until) {
         (Some(action), None) => StepKind::Action(action),
-        (Some(most), Some(_)) => StepKind::Until { most },
-        (None, _) => StepKind::Action(kinematics::Action::Unknown),
+        (Some(limit), Some(_)) => StepKind::Until { limit },
+        (None, _) => StepKind::Action(kinematics::MotionPrimitive::Unknown),
     }
 }
 

@@ -11,8 +11,8 @@ use pydslrep_syntax::{EntityKind, Parse, Span, TokenKind};
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::environment::{
-    Action, ActionKind, Branch, Circle, Condition, Environment, Movement, Objects, Robot, Ros2, Sensor,
-    Source, Wheel,
+    Branch, Circle, Condition, Environment, Movement, Objects, ResolvedAction, ResolvedActionKind, Robot,
+    Ros2, Sensor, Source, Wheel,
 };
 use crate::{
     Database, Diagnostic, EntityId, EntityRef, FileId, Severity, check_cancelled, diagnostics, plan,
@@ -210,7 +210,7 @@ impl Database {
         Parts { database: self, file: None }.folded_text(entity, action)
     }
 
-    /// The same of an action without its blocks: [`Action::text`].
+    /// The same of an action without its blocks: [`ResolvedAction::text`].
     pub fn action_head(&self, entity: &EntityRef<'_>, action: &ast::Action) -> String {
         self.action_text(entity, head(action.span, action.blocks().next()))
     }
@@ -409,8 +409,8 @@ impl<'a> Parts<'a> {
     fn sensor(&self, id: EntityId) -> Option<Sensor> {
         let Entity::Sensor(sensor) = self.database.tree(id)? else { return None };
         let kind = match sensor.kind {
-            Some((ast::SensorKind::Bumper, _)) => SensorKind::Bumper,
-            Some((ast::SensorKind::Distance, _)) | None => SensorKind::Distance,
+            Some((ast::SensorKeyword::Bumper, _)) => SensorKind::Bumper,
+            Some((ast::SensorKeyword::Distance, _)) | None => SensorKind::Distance,
         };
         Some(Sensor { name: sensor.name.as_ref()?.text.to_string(), kind })
     }
@@ -480,7 +480,7 @@ pub struct KnownStatements<'a> {
 impl KnownStatements<'_> {
     /// Returns the action's kind; `None` where it, or a movement that it does, is broken. The movements that it does
     /// are indices into [`Self::done`].
-    pub fn kind(&self, action: &ast::Action) -> Option<ActionKind> {
+    pub fn kind(&self, action: &ast::Action) -> Option<ResolvedActionKind> {
         let Self { parts, sensors, places, .. } = self;
         let entity = self.entity;
         Statements { parts, entity, sensors, places, number: 0 }.kind(&action.kind)
@@ -504,16 +504,16 @@ struct Statements<'p, 'a> {
 }
 
 impl Statements<'_, '_> {
-    fn actions(&mut self, actions: &[ast::Action]) -> Option<Vec<Action>> {
+    fn actions(&mut self, actions: &[ast::Action]) -> Option<Vec<ResolvedAction>> {
         actions.iter().map(|action| self.action(action)).collect()
     }
 
-    fn action(&mut self, action: &ast::Action) -> Option<Action> {
+    fn action(&mut self, action: &ast::Action) -> Option<ResolvedAction> {
         check_cancelled();
         self.number += 1;
         let number = self.number;
         let head = head(action.span, action.blocks().next());
-        Some(Action {
+        Some(ResolvedAction {
             number,
             text: self.parts.folded_text(&self.entity, head),
             source: self.parts.source(&self.entity, action.span.start)?,
@@ -521,16 +521,16 @@ impl Statements<'_, '_> {
         })
     }
 
-    fn kind(&mut self, statement: &Statement) -> Option<ActionKind> {
+    fn kind(&mut self, statement: &Statement) -> Option<ResolvedActionKind> {
         match statement {
             Statement::Repeat(repeat) => {
                 let rounds = repeat.rounds.as_ref()?;
                 let body = &repeat.block.as_ref()?.actions;
                 Some(match rounds {
                     ast::Rounds::Times(number) => {
-                        ActionKind::Repeat { count: count(number)?, body: self.actions(body)? }
+                        ResolvedActionKind::Repeat { count: count(number)?, body: self.actions(body)? }
                     }
-                    ast::Rounds::Until(clause) => ActionKind::RepeatUntil {
+                    ast::Rounds::Until(clause) => ResolvedActionKind::RepeatUntil {
                         until: condition(&clause.condition, self.sensors)?,
                         body: self.actions(body)?,
                     },
@@ -540,7 +540,7 @@ impl Statements<'_, '_> {
             Statement::Do(call) => {
                 let (parts, id) = (self.parts, self.entity.id);
                 let done = parts.resolve(id, EntityKind::Movement, call.movement.as_ref()?)?;
-                self.places.get(&done).map(|&movement| ActionKind::Do { movement })
+                self.places.get(&done).map(|&movement| ResolvedActionKind::Do { movement })
             }
             Statement::Move(_) | Statement::Turn(_) | Statement::Wait(_) | Statement::Slam => {
                 simple_kind(statement, self.sensors)
@@ -549,7 +549,7 @@ impl Statements<'_, '_> {
     }
 
     /// The first branch has the number of the statement.
-    fn choice(&mut self, choice: &ast::If) -> Option<ActionKind> {
+    fn choice(&mut self, choice: &ast::If) -> Option<ResolvedActionKind> {
         let mut branches = Vec::with_capacity(choice.branches.len());
         for (index, branch) in choice.branches.iter().enumerate() {
             self.number += usize::from(index > 0);
@@ -564,7 +564,7 @@ impl Statements<'_, '_> {
         }
         let otherwise =
             choice.otherwise.as_ref().map_or(Some(Vec::new()), |block| self.actions(&block.actions))?;
-        Some(ActionKind::If { branches, otherwise })
+        Some(ResolvedActionKind::If { branches, otherwise })
     }
 }
 
@@ -584,13 +584,13 @@ fn count(number: &ast::Number) -> Option<u32> {
 pub const COUNTS: std::ops::RangeInclusive<f64> = 1.0..=10_000.0;
 
 /// Returns the kind of a statement that has no blocks and does no movement.
-fn simple_kind(statement: &Statement, sensors: &[Sensor]) -> Option<ActionKind> {
+fn simple_kind(statement: &Statement, sensors: &[Sensor]) -> Option<ResolvedActionKind> {
     let until = |clause: &Option<ast::Until>| match clause {
         Some(clause) => condition(&clause.condition, sensors).map(Some),
         None => Some(None),
     };
     Some(match statement {
-        Statement::Move(step) => ActionKind::Move {
+        Statement::Move(step) => ResolvedActionKind::Move {
             distance: match &step.distance {
                 Some(number) => Some(length(number, step.unit)?),
                 None if step.until.is_some() && step.unit.is_none() => None,
@@ -600,22 +600,22 @@ fn simple_kind(statement: &Statement, sensors: &[Sensor]) -> Option<ActionKind> 
             until: until(&step.until)?,
         },
         Statement::Turn(turn) => turn_kind(turn, sensors)?,
-        Statement::Wait(wait) => ActionKind::Wait {
+        Statement::Wait(wait) => ResolvedActionKind::Wait {
             seconds: match &wait.seconds {
                 Some(number) => Some(number.value?),
                 None => wait.until.as_ref().map(|_| None)?,
             },
             until: until(&wait.until)?,
         },
-        Statement::Slam => ActionKind::Slam,
+        Statement::Slam => ResolvedActionKind::Slam,
         Statement::Repeat(_) | Statement::If(_) | Statement::Do(_) => return None,
     })
 }
 
-fn turn_kind(turn: &ast::Turn, sensors: &[Sensor]) -> Option<ActionKind> {
+fn turn_kind(turn: &ast::Turn, sensors: &[Sensor]) -> Option<ResolvedActionKind> {
     let left = turn.direction?.0 == ast::Direction::Left;
     if let Some(clause) = turn.until.as_ref().filter(|_| turn.is_of_article()) {
-        return Some(ActionKind::TurnUntil {
+        return Some(ResolvedActionKind::TurnUntil {
             left,
             sensors: indices(&clause.condition.sensors.names, sensors)?,
         });
@@ -627,7 +627,7 @@ fn turn_kind(turn: &ast::Turn, sensors: &[Sensor]) -> Option<ActionKind> {
         }),
         None => None,
     };
-    Some(ActionKind::Turn {
+    Some(ResolvedActionKind::Turn {
         left,
         degrees: match &turn.angle {
             Some(angle) => Some(angle.value?),
@@ -720,14 +720,17 @@ environment e with ip here has { ^left q q } robots with { m n o m } moves";
         let environment = only(&program).unwrap();
         assert_eq!(environment.host, Some([10, 0, 0, 7].into()));
         assert_eq!(environment.robots.len(), 2);
-        assert_eq!(environment.robots[0].drive, Drive::FourMecanum);
+        assert_eq!(environment.robots[0].drive, Drive::Mecanum);
         assert_eq!(environment.robots[0].name, "left");
         assert_eq!(environment.robots[0].sensors.len(), 2);
         assert_eq!(environment.robots[1].drive, Drive::TwoWheel);
         assert_eq!(environment.schedule, [vec![0, 1], vec![2], vec![0]]);
         let actions = &environment.movements[0].actions;
-        assert_eq!(actions[0].kind, ActionKind::Move { distance: Some(-0.4), speed: 0.18, until: None });
-        let right = ActionKind::Turn {
+        assert_eq!(
+            actions[0].kind,
+            ResolvedActionKind::Move { distance: Some(-0.4), speed: 0.18, until: None }
+        );
+        let right = ResolvedActionKind::Turn {
             left: false,
             degrees: Some(90.0),
             circle: None,
@@ -735,7 +738,7 @@ environment e with ip here has { ^left q q } robots with { m n o m } moves";
             until: None,
         };
         assert_eq!(actions[1].kind, right);
-        assert_eq!(actions[2].kind, ActionKind::TurnUntil { left: true, sensors: vec![1, 0] });
+        assert_eq!(actions[2].kind, ResolvedActionKind::TurnUntil { left: true, sensors: vec![1, 0] });
         assert_eq!(actions[2].text, "turn left until { t, s t }");
         assert_eq!(actions[2].source, Source { file: None, line: 7 });
     }

@@ -66,11 +66,11 @@ fn without_spans(tree: &str) -> String {
 fn check(text: &str) -> Result<(), TestCaseError> {
     let verdict = pydslrep_naive::check(text);
     prop_assert!(verdict.grammatical, "the naive checker does not understand this");
-    let meant = meaning(text);
-    prop_assert!(meant.is_some(), "the parser does not understand this");
+    let before = meaning(text);
+    prop_assert!(before.is_some(), "the parser does not understand this");
 
     let formatted = format(text);
-    prop_assert_eq!(meaning(&formatted), meant, "formatting changes the meaning:\n{}", &formatted);
+    prop_assert_eq!(meaning(&formatted), before, "formatting changes the meaning:\n{}", &formatted);
     prop_assert_eq!(format(&formatted), formatted.clone(), "formatting again changes something");
 
     compare(&diagnostics(text), verdict)?;

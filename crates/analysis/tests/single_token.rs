@@ -1,5 +1,5 @@
 //! One wrong token in a program of the article: it is reported where it is, about once, and nowhere else. Whether what
-//! it leaves is still a program, and what is then to be said of it, is for the naive checker to decide.
+//! it leaves is still a program, and which problems it then has, is for the naive checker to decide.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests are tests, too")]
 
@@ -136,29 +136,29 @@ impl Slip {
     }
 }
 
-/// Where the slip leaves a program, all that the contract says of it is said, and nothing else.
-fn check_program(verdict: pydslrep_naive::Verdict, said: &BTreeSet<Finding>) -> Result<(), String> {
+/// Where the slip leaves a program, exactly the problems of the contract are reported.
+fn check_program(verdict: pydslrep_naive::Verdict, reported: &BTreeSet<Finding>) -> Result<(), String> {
     let expected: BTreeSet<Finding> = verdict.findings.into_iter().collect();
     let invented = |finding: &&Finding| !expected.contains(finding) && !verdict.excused.contains(finding);
-    match (expected.difference(said).next(), said.iter().find(invented)) {
+    match (expected.difference(reported).next(), reported.iter().find(invented)) {
         (None, None) => Ok(()),
-        (missing, invented) => Err(format!("not said: {missing:?}; not in the contract: {invented:?}")),
+        (missing, invented) => Err(format!("not reported: {missing:?}; not in the contract: {invented:?}")),
     }
 }
 
-/// Where it does not, that is said near the slip, once or twice, and elsewhere is nothing but the truth.
-fn check_broken(slip: &Slip, before: &str, said: &[Finding], syntax: &[Finding]) -> Result<(), String> {
+/// Where it does not, one or two syntax errors are reported near the slip, and elsewhere only true problems.
+fn check_broken(slip: &Slip, before: &str, reported: &[Finding], syntax: &[Finding]) -> Result<(), String> {
     let near = slip.surroundings(before);
     let is_near = |finding: &Finding| near.start <= finding.start && finding.start <= near.end;
     if !syntax.iter().any(|finding| is_near(&slip.place_before(finding.clone()))) {
-        return Err("nothing is said near the slip".to_owned());
+        return Err("nothing is reported near the slip".to_owned());
     }
     if syntax.len() > 2 {
         return Err("a cascade".to_owned());
     }
     let truth = slip.true_consequences(before);
     let far =
-        said.iter().map(|finding| slip.place_before(finding.clone())).filter(|finding| !is_near(finding));
+        reported.iter().map(|finding| slip.place_before(finding.clone())).filter(|finding| !is_near(finding));
     match far.into_iter().find(|finding| !truth.contains(finding)) {
         Some(untrue) => Err(format!("no true consequence: {untrue:?}")),
         None => Ok(()),
@@ -170,14 +170,14 @@ fn check(slip: &Slip, program: &str, before: &str, complaints: &mut Vec<String>)
     let mut database = Database::new();
     let file = database.open("slip.pyr", &slip.text);
     let diagnostics = database.diagnostics(file);
-    let said: Vec<Finding> = diagnostics.iter().map(finding).collect();
+    let reported: Vec<Finding> = diagnostics.iter().map(finding).collect();
     let syntax: Vec<Finding> =
         diagnostics.iter().filter(|diagnostic| is_syntax(diagnostic)).map(finding).collect();
     let verdict = pydslrep_naive::check(&slip.text);
     let outcome = if verdict.grammatical {
-        check_program(verdict, &said.into_iter().collect())
+        check_program(verdict, &reported.into_iter().collect())
     } else {
-        check_broken(slip, before, &said, &syntax)
+        check_broken(slip, before, &reported, &syntax)
     };
     if let Err(complaint) = outcome {
         complaints.push(format!("{program}, {}: {complaint}", slip.what));

@@ -1,8 +1,8 @@
 """Runs a script with the package that it imports.
 
 The arguments are the folder of the package, the folder of the program if modules are imported from there, too, or
-nothing, and then the script with its own arguments. Standard input must stay open: when it ends, whoever started the
-script is gone, and the script ends, too.
+nothing, and then the script with its own arguments. Standard input must stay open: when it ends, the process that
+started the script is gone, and the script ends, too.
 """
 
 import sys

@@ -19,7 +19,7 @@ mod testing;
 use pydslrep_analysis::{Database, Edition};
 use pydslrep_syntax::{Expected, Quantity, Span, TokenKind, expected_after};
 
-use self::context::CursorContext;
+use self::context::CompletionContext;
 pub use self::documentation::completion_documentation;
 pub(crate) use self::item::Rank;
 pub use self::item::{Completion, CompletionKind, Documentation};
@@ -58,7 +58,7 @@ pub fn completions(
         };
         return filter_at(database, position, items, trigger);
     }
-    let Some(context) = CursorContext::find(database, position, speed) else { return Vec::new() };
+    let Some(context) = CompletionContext::find(database, position, speed) else { return Vec::new() };
     let expected = expected_after(&context.text, &context.before);
     let opens = match trigger {
         CompletionTrigger::Invoked => true,
@@ -110,7 +110,7 @@ fn filter_at(
     filter::filter(items, filter::Word { before: &before, after: &after, ends_line }, trigger)
 }
 
-fn items_for(context: &CursorContext<'_>, expected: Expected) -> Vec<Completion> {
+fn items_for(context: &CompletionContext<'_>, expected: Expected) -> Vec<Completion> {
     match expected {
         Expected::Word(word) => {
             let mut found = clauses(context, word);
@@ -146,7 +146,7 @@ fn items_for(context: &CursorContext<'_>, expected: Expected) -> Vec<Completion>
 }
 
 /// The clauses of actions that a keyword begins, with placeholders.
-fn clauses(context: &CursorContext<'_>, word: TokenKind) -> Vec<Completion> {
+fn clauses(context: &CompletionContext<'_>, word: TokenKind) -> Vec<Completion> {
     match word {
         TokenKind::At => actions::speed(context),
         TokenKind::With if context.movement().is_some() => actions::circle(context),

@@ -9,7 +9,7 @@ mod known;
 mod plan;
 mod steps;
 
-use pydslrep_analysis::environment::ActionKind;
+use pydslrep_analysis::environment::ResolvedActionKind;
 use pydslrep_analysis::{Database, EntityRef, FileId};
 use pydslrep_syntax::Span;
 use pydslrep_syntax::ast::{self, Entity};
@@ -17,7 +17,7 @@ use smol_str::SmolStr;
 
 pub use self::known::KnownMovements;
 use self::known::Route;
-use self::plan::{Planned, Start};
+use self::plan::{PlannedStep, Start};
 use self::steps::{Body, calls};
 use crate::hover::action::{describe_leg, open_end_reason, way_of};
 use crate::hover::format::{number, short_pose, time};
@@ -147,7 +147,7 @@ fn movement_hints(
     let statements = database.known_statements(entity.id, robot.as_ref().or(known.robot(&name)))?;
     let body = Body { database, entity: *entity, known: statements, sight };
     let steps = body.steps(tree.body?, &tree.actions);
-    let reason = |kind: &ActionKind, action: &ast::Action| {
+    let reason = |kind: &ResolvedActionKind, action: &ast::Action| {
         open_end_reason(kind, &database.action_head(entity, action))
     };
     let route = known.plan(&name, robot, steps, body.known.done(), &reason);
@@ -184,7 +184,7 @@ struct Writer<'a> {
 impl Writer<'_> {
     fn write(
         &self,
-        steps: &[Planned<'_>],
+        steps: &[PlannedStep<'_>],
         within: Within,
         hints: &mut Vec<InlayHint>,
         broken: &mut Vec<Span>,
@@ -202,7 +202,7 @@ impl Writer<'_> {
 
     fn write_step(
         &self,
-        step: &Planned<'_>,
+        step: &PlannedStep<'_>,
         action: &ast::Action,
         within: Within,
         hints: &mut Vec<InlayHint>,
@@ -225,7 +225,7 @@ impl Writer<'_> {
     }
 
     /// The label and tooltip of a step.
-    fn pose_and_time(&self, step: &Planned<'_>, within: Within) -> Option<(String, String)> {
+    fn pose_and_time(&self, step: &PlannedStep<'_>, within: Within) -> Option<(String, String)> {
         let why = |why: usize| self.route.reasons.get(why).map_or("", String::as_str);
         let Some(leg) = &step.leg else {
             let label = self.options.pose.then(|| UNKNOWN.to_owned())?;
@@ -257,18 +257,19 @@ impl Writer<'_> {
 }
 
 /// The clause that an action omits: the label, and the text to insert.
-fn default_clause(written: &ast::Action, action: &ActionKind) -> Option<(String, String)> {
+fn default_clause(written: &ast::Action, action: &ResolvedActionKind) -> Option<(String, String)> {
     let text = match (&written.kind, action) {
         (
             ast::ActionKind::Move(ast::Move { speed: None, until: None, .. }),
-            ActionKind::Move { speed, .. },
+            ResolvedActionKind::Move { speed, .. },
         ) => {
             let speed = number(speed * 100.0, 3);
             if speed.contains('.') { format!("at {speed}") } else { format!("at {speed}.0") }
         }
-        (ast::ActionKind::Turn(turn), ActionKind::Turn { degrees: Some(degrees), until: None, .. })
-            if turn.angle.is_none() && turn.circle.is_none() && turn.speed.is_none() =>
-        {
+        (
+            ast::ActionKind::Turn(turn),
+            ResolvedActionKind::Turn { degrees: Some(degrees), until: None, .. },
+        ) if turn.angle.is_none() && turn.circle.is_none() && turn.speed.is_none() => {
             number(degrees.abs(), 3)
         }
         _ => return None,

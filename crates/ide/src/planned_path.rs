@@ -8,7 +8,7 @@ use std::fmt;
 use pydslrep_analysis::environment::Environment;
 use pydslrep_analysis::{Blocked, Database, EntityId, check_cancelled, plan};
 use pydslrep_kinematics::{ActionIndex, Leg, ModelError, Place, Plan, Pose, RobotPath};
-use pydslrep_scene::{self as scenery, Collision, ENDING, Mount, Robot, Scene, Shape, Thing};
+use pydslrep_scene::{self as scenery, Collision, ENDING, Mount, Robot, Scene, SceneObject, Shape};
 use pydslrep_schema::Problem;
 use serde::{Deserialize, Serialize};
 
@@ -292,11 +292,11 @@ fn obstacle_path(trajectory: &scenery::Trajectory) -> ObstaclePath {
 }
 
 fn collisions(environment: &Environment, scene: &Scene, plan: &Plan) -> Vec<PlannedCollision> {
-    let target = |thing| match thing {
-        Thing::Obstacle(index) => {
-            scene.obstacles.get(index).map(|thing| CollisionTarget::Obstacle(thing.name.clone()))
+    let target = |object| match object {
+        SceneObject::Obstacle(index) => {
+            scene.obstacles.get(index).map(|obstacle| CollisionTarget::Obstacle(obstacle.name.clone()))
         }
-        Thing::Robot(index) => {
+        SceneObject::Robot(index) => {
             scene.robots.get(index).map(|robot| CollisionTarget::Robot(robot.name.clone()))
         }
     };

@@ -64,7 +64,7 @@ pub(crate) fn detail(tree: &Entity) -> String {
             radius.map_or_else(String::new, |radius| format!("{kind}radius {radius} cm"))
         }
         Entity::Sensor(sensor) => match sensor.kind {
-            Some((pydslrep_syntax::ast::SensorKind::Bumper, _)) => "bumper".to_owned(),
+            Some((pydslrep_syntax::ast::SensorKeyword::Bumper, _)) => "bumper".to_owned(),
             _ => "distance".to_owned(),
         },
         Entity::Ip(ip) => ip.address.as_ref().map(|(address, _)| address.to_string()).unwrap_or_default(),

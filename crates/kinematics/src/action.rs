@@ -2,9 +2,9 @@
 
 use crate::{Model, PerWheel, Pose, SpeedProfile, Turning, Twist, motion};
 
-/// An action of a robot, in numbers.
+/// An action of a robot in numbers, without conditions and references.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Action {
+pub enum MotionPrimitive {
     /// Straight ahead along the heading.
     Move {
         /// Metres; negative is backwards.
@@ -70,18 +70,18 @@ pub(crate) struct Course {
 
 impl Course {
     /// `None` if only the world decides when the action ends.
-    pub(crate) fn new(model: &Model, action: Action) -> Option<Self> {
+    pub(crate) fn new(model: &Model, action: MotionPrimitive) -> Option<Self> {
         let (unit, amount, speed) = match action {
-            Action::Move { distance, speed } => {
+            MotionPrimitive::Move { distance, speed } => {
                 (Twist { vx: distance.signum(), ..Twist::default() }, distance, speed)
             }
-            Action::Turn { angle, speed } => (model.turning().twist(angle), angle, speed),
-            Action::Arc { angle, radius, speed, reverse } => {
+            MotionPrimitive::Turn { angle, speed } => (model.turning().twist(angle), angle, speed),
+            MotionPrimitive::Arc { angle, radius, speed, reverse } => {
                 let radius = if reverse { -radius } else { radius };
                 (Turning::OnCircle { radius }.twist(angle), angle, speed)
             }
-            Action::Wait { seconds } => return Some(Self::wait(model, seconds)),
-            Action::Unknown => return None,
+            MotionPrimitive::Wait { seconds } => return Some(Self::wait(model, seconds)),
+            MotionPrimitive::Unknown => return None,
         };
         let rim_per_unit = model.fastest_rim(unit);
         let profile = SpeedProfile::new(amount.abs() * rim_per_unit, speed, motion::RIM_ACCELERATION);
@@ -146,7 +146,7 @@ mod tests {
         model.with_scrub_factor(1.5).unwrap()
     }
 
-    fn leg(model: &Model, start: Pose, action: Action) -> Leg {
+    fn leg(model: &Model, start: Pose, action: MotionPrimitive) -> Leg {
         plan_steps(model, start, &Step::flat(&[action]), &[]).legs.remove(0)
     }
 
@@ -161,7 +161,7 @@ mod tests {
         ];
         for drive in Drive::ALL {
             for (angle, reverse, end) in ends {
-                let arc = Action::Arc { angle, radius: 1.0, speed: 0.09, reverse };
+                let arc = MotionPrimitive::Arc { angle, radius: 1.0, speed: 0.09, reverse };
                 let to = leg(&model(drive), Pose::default(), arc).to;
                 assert!(to.distance(&end) < 1e-12 && (to.theta - end.theta).abs() < 1e-12, "{to:?}");
             }
@@ -172,9 +172,9 @@ mod tests {
     fn the_speed_of_an_arc_is_that_of_its_fastest_wheel() {
         // Two wheels: R + d/2; skid-steer with its wider track; mecanum wheels: R + K with K = (wheelbase + track)/2.
         let widest =
-            [(Drive::TwoWheel, 0.15), (Drive::FourWheel, 0.15 * 1.5), (Drive::FourMecanum, 0.125 + 0.15)];
+            [(Drive::TwoWheel, 0.15), (Drive::FourWheel, 0.15 * 1.5), (Drive::Mecanum, 0.125 + 0.15)];
         for (drive, beyond) in widest {
-            let arc = Action::Arc { angle: -PI, radius: 1.0, speed: 0.2, reverse: false };
+            let arc = MotionPrimitive::Arc { angle: -PI, radius: 1.0, speed: 0.2, reverse: false };
             let leg = leg(&model(drive), Pose::default(), arc);
             let expected = PI * (1.0 + beyond) / 0.2 + 0.2 / motion::RIM_ACCELERATION + motion::REST;
             assert!((leg.duration - expected).abs() < 1e-9, "{drive:?}: {leg:?}");
@@ -187,7 +187,7 @@ mod tests {
     fn the_inner_wheels_of_an_arc_are_slower_and_may_turn_back() {
         let model = model(Drive::TwoWheel);
         let rates = |radius, reverse| {
-            let arc = Action::Arc { angle: PI, radius, speed: 0.1, reverse };
+            let arc = MotionPrimitive::Arc { angle: PI, radius, speed: 0.1, reverse };
             leg(&model, Pose::default(), arc).rates.to_vec()
         };
         let close = |got: Vec<f64>, left: f64, right: f64| {
@@ -201,7 +201,7 @@ mod tests {
     #[test]
     fn a_wait_takes_its_time_and_nothing_else() {
         let start = Pose::new(1.0, 2.0, 3.0);
-        let leg = leg(&model(Drive::FourWheel), start, Action::Wait { seconds: 2.5 });
+        let leg = leg(&model(Drive::FourWheel), start, MotionPrimitive::Wait { seconds: 2.5 });
         assert_eq!((leg.kind, leg.to, leg.end()), (LegKind::Wait, start, Some(2.5)));
         assert!(leg.rates.len() == 4 && leg.rates.iter().all(|&rate| rate == 0.0));
         assert_eq!((leg.pose_at(1.0), leg.top_speed(0.5)), (start, 0.0));
@@ -209,7 +209,7 @@ mod tests {
 
     #[test]
     fn turns_have_a_speed_of_their_own() {
-        let turn = Action::Turn { angle: PI, speed: 0.3 };
+        let turn = MotionPrimitive::Turn { angle: PI, speed: 0.3 };
         let leg = leg(&model(Drive::TwoWheel), Pose::default(), turn);
         assert!((leg.duration - (PI * 0.15 / 0.3 + 0.6 + motion::REST)).abs() < 1e-12, "{leg:?}");
     }
@@ -223,7 +223,7 @@ mod tests {
             angle in -7.0..7.0, radius in 0.01..3.0, speed in 0.02..0.5, reverse: bool,
         ) {
             let (model, start) = (model(drive), Pose::new(x, y, theta));
-            let leg = leg(&model, start, Action::Arc { angle, radius, speed, reverse });
+            let leg = leg(&model, start, MotionPrimitive::Arc { angle, radius, speed, reverse });
             let peak = model.forward(&crate::Setting { rates: leg.rates, ..crate::Setting::default() });
             let count = 4_000;
             let dt = leg.duration / f64::from(count);

@@ -2,7 +2,7 @@
 
 use crate::action::Course;
 use crate::summary::{Motion, Summary};
-use crate::{Action, Model, Pose, Step, StepKind};
+use crate::{Model, MotionPrimitive, Pose, Step, StepKind};
 
 /// A sequence of steps, as one robot does them. Steps without an entry in a plan are left out, so that a look at every
 /// round costs no more than its entries.
@@ -63,7 +63,7 @@ impl NodeKind {
                 }
                 None => (Self::Unknown(None), Summary::unknown()),
             },
-            StepKind::Until { most } => (Self::until(model, *most), Summary::unknown()),
+            StepKind::Until { limit } => (Self::until(model, *limit), Summary::unknown()),
             StepKind::Repeat { count, body } => {
                 let body = Block::new(model, body, called);
                 let summary = body.summary.repeated(*count);
@@ -81,7 +81,7 @@ impl NodeKind {
         }
     }
 
-    fn until(model: &Model, most: Action) -> Self {
-        Self::Unknown(Course::new(model, most).map(Box::new))
+    fn until(model: &Model, limit: MotionPrimitive) -> Self {
+        Self::Unknown(Course::new(model, limit).map(Box::new))
     }
 }

@@ -33,17 +33,17 @@ mod testing;
 mod traction;
 mod walk;
 
-pub use action::{Action, LegKind};
+pub use action::{LegKind, MotionPrimitive};
 pub use leg::{ActionIndex, Call, Leg, Place};
 pub use model::{Geometry, Model, ModelError, Settable, Setting, Turning};
 pub use path::{RobotPath, TimedPose};
 pub use per_wheel::PerWheel;
 pub use plan::{
-    MOST_ACTIONS, Plan, PlanError, RobotPlan, Run, plan, plan_movement, plan_schedule, plan_step, plan_steps,
+    MAX_ACTIONS, Plan, PlanError, RobotPlan, Run, plan, plan_movement, plan_schedule, plan_step, plan_steps,
 };
 pub use pose::{Pose, Twist, angle_between, heading_degrees, wrap_angle};
 pub use profile::SpeedProfile;
 pub use pydslrep_robots::Drive;
 pub use step::{Movement, Step, StepKind};
-pub use summary::{LONGEST_PLAN, Motion, Summary};
+pub use summary::{MAX_PLAN_DURATION, Motion, Summary};
 pub use traction::{Traction, scrub_factor};

@@ -272,7 +272,7 @@ pub(crate) mod tests {
 
     #[test]
     fn mecanum_drives_sideways() {
-        let model = Model::new(Drive::FourMecanum, &[0.1; 4], GEOMETRY).unwrap();
+        let model = Model::new(Drive::Mecanum, &[0.1; 4], GEOMETRY).unwrap();
         let rates = model.inverse(Twist { vx: 0.0, vy: 0.1, omega: 0.0 }).rates;
         assert!(rates.iter().zip([-1.0, 1.0, 1.0, -1.0]).all(|(&a, b)| close(a, b)), "{rates:?}");
         let twist = model.forward(&Setting::of_rates(&[1.0, 0.0, 0.0, 0.0]));
@@ -286,7 +286,7 @@ pub(crate) mod tests {
         let plain = Model::new(Drive::FourWheel, &[0.1; 4], GEOMETRY).unwrap();
         let scrubbed = plain.clone().with_scrub_factor(1.5).unwrap();
         assert!(close(scrubbed.fastest_rim(turn), 1.5 * plain.fastest_rim(turn)));
-        let mecanum = Model::new(Drive::FourMecanum, &[0.1; 4], GEOMETRY).unwrap();
+        let mecanum = Model::new(Drive::Mecanum, &[0.1; 4], GEOMETRY).unwrap();
         assert_eq!(mecanum.clone().with_scrub_factor(1.5).unwrap(), mecanum);
     }
 
@@ -338,7 +338,7 @@ pub(crate) mod tests {
 
         #[test]
         fn forward_is_the_least_squares_solution(rates in prop::collection::vec(-10.0..10.0, 4)) {
-            let model = Model::new(Drive::FourMecanum, &[0.04; 4], GEOMETRY).unwrap();
+            let model = Model::new(Drive::Mecanum, &[0.04; 4], GEOMETRY).unwrap();
             let best = model.forward(&Setting::of_rates(&rates));
             let residual = |twist: Twist| -> f64 {
                 model.inverse(twist).rates.iter().zip(&rates).map(|(a, b)| (a - b).powi(2)).sum()

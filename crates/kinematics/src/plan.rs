@@ -6,10 +6,10 @@ use std::fmt;
 use crate::block::Block;
 use crate::path::RobotPath;
 use crate::walk::Walk;
-use crate::{Action, Model, Movement, Pose, Step, Summary};
+use crate::{Model, MotionPrimitive, Movement, Pose, Step, Summary};
 
-/// The most actions that a plan lists.
-pub const MOST_ACTIONS: u64 = 100_000;
+/// The maximum number of actions that a plan lists.
+pub const MAX_ACTIONS: u64 = 100_000;
 
 /// One movement of one robot within a schedule: actions without statements around them.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,7 +17,7 @@ pub struct Run {
     /// Which robot.
     pub robot: usize,
     /// Its actions, in order.
-    pub actions: Vec<Action>,
+    pub actions: Vec<MotionPrimitive>,
 }
 
 /// A robot before its first movement.
@@ -76,7 +76,7 @@ impl fmt::Display for PlanError {
 impl std::error::Error for PlanError {}
 
 /// The path of some actions alone: from `start` at time 0.
-pub fn plan_movement(model: &Model, start: Pose, actions: &[Action]) -> RobotPath {
+pub fn plan_movement(model: &Model, start: Pose, actions: &[MotionPrimitive]) -> RobotPath {
     plan_steps(model, start, &Step::flat(actions), &[])
 }
 
@@ -86,7 +86,7 @@ pub fn plan_steps(model: &Model, start: Pose, steps: &[Step], called: &[Vec<Step
     let called: Vec<(usize, &[Step])> = called.iter().map(|steps| (0, steps.as_slice())).collect();
     let blocks = blocks(&called, &[model]);
     let block = Block::new(model, steps, &|other| blocks.get(other).map(|block| block.summary));
-    let mut walk = Walk::new(&blocks, RobotPath::new(start), MOST_ACTIONS);
+    let mut walk = Walk::new(&blocks, RobotPath::new(start), MAX_ACTIONS);
     walk.run(&block, 0, 0, Some(0.0));
     walk.into_path()
 }
@@ -99,7 +99,7 @@ pub fn plan_step(
     called: &dyn Fn(usize) -> Option<Summary>,
 ) -> RobotPath {
     let block = Block::new(model, &[step], called);
-    let mut walk = Walk::new(&[], RobotPath::new(start), MOST_ACTIONS);
+    let mut walk = Walk::new(&[], RobotPath::new(start), MAX_ACTIONS);
     walk.run(&block, 0, 0, Some(0.0));
     walk.into_path()
 }
@@ -126,7 +126,7 @@ pub fn plan(robots: &[RobotPlan], schedule: &[Vec<Run>]) -> Result<Plan, PlanErr
 /// others call is listed before them.
 ///
 /// It takes as long as the movements and what is listed of them are, however often they are repeated: at most
-/// [`MOST_ACTIONS`] legs, all robots together. Poses and times at the end are right nevertheless.
+/// [`MAX_ACTIONS`] legs, all robots together. Poses and times at the end are right nevertheless.
 ///
 /// # Errors
 /// When the schedule names a movement that is not there, or one of a robot that is not there.
@@ -151,7 +151,7 @@ pub fn plan_schedule(
     let mut walks: Vec<Walk> = robots
         .iter()
         .zip(shares(&wanted))
-        .map(|(robot, most)| Walk::new(&blocks, RobotPath::new(robot.start), most))
+        .map(|(robot, max_legs)| Walk::new(&blocks, RobotPath::new(robot.start), max_legs))
         .collect();
     let mut clock = Some(0.0);
     for (group, runs) in schedule.iter().enumerate() {
@@ -187,7 +187,7 @@ fn blocks(movements: &[(usize, &[Step])], models: &[&Model]) -> Vec<Block> {
 fn shares(wanted: &[u64]) -> Vec<u64> {
     let mut order: Vec<usize> = (0..wanted.len()).collect();
     order.sort_by_key(|&robot| wanted[robot]);
-    let (mut shares, mut left) = (vec![0; wanted.len()], MOST_ACTIONS);
+    let (mut shares, mut left) = (vec![0; wanted.len()], MAX_ACTIONS);
     for (robot, robots) in order.into_iter().zip((1..=wanted.len() as u64).rev()) {
         shares[robot] = wanted[robot].min(left / robots);
         left -= shares[robot];
@@ -208,12 +208,12 @@ mod tests {
         RobotPlan { model: Model::new(Drive::TwoWheel, &[0.035, 0.035], geometry).unwrap(), start }
     }
 
-    fn forward(distance: f64) -> Action {
-        Action::Move { distance, speed: 0.09 }
+    fn forward(distance: f64) -> MotionPrimitive {
+        MotionPrimitive::Move { distance, speed: 0.09 }
     }
 
-    fn turn(angle: f64) -> Action {
-        Action::Turn { angle, speed: motion::RIM_SPEED }
+    fn turn(angle: f64) -> MotionPrimitive {
+        MotionPrimitive::Turn { angle, speed: motion::RIM_SPEED }
     }
 
     const METRE: f64 = 1.0 / 0.09 + 0.18 + motion::REST;
@@ -273,7 +273,7 @@ mod tests {
     #[test]
     fn unknown_spoils_own_poses_and_everybodys_later_times() {
         let robots = [robot(Pose::default()), robot(Pose::default())];
-        let lost = Run { robot: 0, actions: vec![forward(1.0), Action::Unknown, forward(1.0)] };
+        let lost = Run { robot: 0, actions: vec![forward(1.0), MotionPrimitive::Unknown, forward(1.0)] };
         let fine = Run { robot: 1, actions: vec![forward(1.0), forward(1.0)] };
         let again = Run { robot: 0, actions: vec![forward(1.0)] };
         let plan = plan(&robots, &[vec![lost, fine.clone()], vec![again, fine]]).unwrap();
@@ -289,7 +289,7 @@ mod tests {
     fn an_unknown_first_group_is_never_forgotten() {
         let robots = [robot(Pose::default())];
         let run = |action| vec![Run { robot: 0, actions: vec![action] }];
-        let plan = plan(&robots, &[run(Action::Unknown), run(forward(1.0))]).unwrap();
+        let plan = plan(&robots, &[run(MotionPrimitive::Unknown), run(forward(1.0))]).unwrap();
         assert_eq!((plan.duration, plan.robots[0].legs.len()), (None, 0));
     }
 
@@ -341,7 +341,7 @@ mod tests {
 
     #[test]
     fn no_point_of_a_robot_is_faster_than_its_top_speed_and_some_are_as_fast() {
-        let actions = [forward(-1.0), turn(-PI), Action::Move { distance: 0.2, speed: 0.4 }];
+        let actions = [forward(-1.0), turn(-PI), MotionPrimitive::Move { distance: 0.2, speed: 0.4 }];
         let path = plan_movement(&robot(Pose::default()).model, Pose::default(), &actions);
         for leg in &path.legs {
             let (mut fastest, count) = (0.0_f64, 4_000);

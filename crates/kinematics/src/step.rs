@@ -1,6 +1,6 @@
 //! The statements of a movement: actions, and statements with actions inside.
 
-use crate::Action;
+use crate::MotionPrimitive;
 
 /// A statement of a movement.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,11 +15,11 @@ pub struct Step {
 #[derive(Debug, Clone, PartialEq)]
 pub enum StepKind {
     /// An action.
-    Action(Action),
-    /// An action that the world may end before its time.
+    Action(MotionPrimitive),
+    /// An action that a condition may end early.
     Until {
-        /// The action up to its bound.
-        most: Action,
+        /// The action without its condition: what it does at most.
+        limit: MotionPrimitive,
     },
     /// Its body, so many times.
     Repeat {
@@ -53,7 +53,7 @@ pub struct Movement {
 
 impl Step {
     /// Actions without any statement around them.
-    pub fn flat(actions: &[Action]) -> Vec<Self> {
+    pub fn flat(actions: &[MotionPrimitive]) -> Vec<Self> {
         let step = |(number, &action)| Self { number, kind: StepKind::Action(action) };
         actions.iter().enumerate().map(step).collect()
     }

@@ -3,8 +3,8 @@
 use crate::block::Block;
 use crate::{Model, Pose, Step, angle_between};
 
-/// The longest that a plan may take, seconds: thirty days.
-pub const LONGEST_PLAN: f64 = 30.0 * 24.0 * 3600.0;
+/// The maximum duration of a plan, seconds: thirty days.
+pub const MAX_PLAN_DURATION: f64 = 30.0 * 24.0 * 3600.0;
 
 /// Ways that differ by less, in metres, radians and seconds, end alike.
 const ALIKE: f64 = 1e-9;

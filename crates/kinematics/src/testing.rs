@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use crate::{Action, Drive, Geometry, Model, Step, StepKind, motion};
+use crate::{Drive, Geometry, Model, MotionPrimitive, Step, StepKind, motion};
 
 pub(crate) fn two_wheels() -> Model {
     Model::new(Drive::TwoWheel, &[0.045, 0.045], Geometry { track: 0.30, wheelbase: 0.25 }).unwrap()
@@ -30,31 +30,36 @@ pub(crate) fn step(kind: StepKind) -> Step {
 }
 
 pub(crate) fn forward(distance: f64) -> Step {
-    step(StepKind::Action(Action::Move { distance, speed: 0.09 }))
+    step(StepKind::Action(MotionPrimitive::Move { distance, speed: 0.09 }))
 }
 
 pub(crate) fn turn(degrees: f64) -> Step {
-    step(StepKind::Action(Action::Turn { angle: degrees.to_radians(), speed: motion::RIM_SPEED }))
+    step(StepKind::Action(MotionPrimitive::Turn { angle: degrees.to_radians(), speed: motion::RIM_SPEED }))
 }
 
 pub(crate) fn left() -> Step {
-    step(StepKind::Action(Action::Turn { angle: FRAC_PI_2, speed: motion::RIM_SPEED }))
+    step(StepKind::Action(MotionPrimitive::Turn { angle: FRAC_PI_2, speed: motion::RIM_SPEED }))
 }
 
 pub(crate) fn arc(degrees: f64, radius: f64, speed: f64) -> Step {
-    step(StepKind::Action(Action::Arc { angle: degrees.to_radians(), radius, speed, reverse: false }))
+    step(StepKind::Action(MotionPrimitive::Arc {
+        angle: degrees.to_radians(),
+        radius,
+        speed,
+        reverse: false,
+    }))
 }
 
 pub(crate) fn wait(seconds: f64) -> Step {
-    step(StepKind::Action(Action::Wait { seconds }))
+    step(StepKind::Action(MotionPrimitive::Wait { seconds }))
 }
 
 pub(crate) fn slam() -> Step {
-    step(StepKind::Action(Action::Unknown))
+    step(StepKind::Action(MotionPrimitive::Unknown))
 }
 
 pub(crate) fn until(distance: f64) -> Step {
-    step(StepKind::Until { most: Action::Move { distance, speed: 0.09 } })
+    step(StepKind::Until { limit: MotionPrimitive::Move { distance, speed: 0.09 } })
 }
 
 pub(crate) fn repeat(count: u32, body: Vec<Step>) -> Step {

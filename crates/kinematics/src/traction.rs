@@ -103,11 +103,11 @@ mod tests {
     #[test]
     fn rollers_that_drag_cost_sideways_motion() {
         let sideways = |lateral_friction| {
-            Traction::new(Drive::FourMecanum, GEOMETRY, lateral_friction).twist(&[-0.1, 0.1, 0.1, -0.1])
+            Traction::new(Drive::Mecanum, GEOMETRY, lateral_friction).twist(&[-0.1, 0.1, 0.1, -0.1])
         };
         assert!((sideways(0.0).vy - 0.1).abs() < 1e-12);
         assert!((sideways(0.05).vy - 0.1 * 0.95 / 1.05).abs() < 1e-12);
-        let ahead = Traction::new(Drive::FourMecanum, GEOMETRY, 0.05).twist(&[0.1; 4]);
+        let ahead = Traction::new(Drive::Mecanum, GEOMETRY, 0.05).twist(&[0.1; 4]);
         assert!(
             close(ahead, Twist { vx: 0.1, ..Twist::default() }, 1e-12),
             "no roller turns, straight on: {ahead:?}"

@@ -6,12 +6,12 @@ use crate::leg::{ActionIndex, Call, Leg, Place};
 use crate::path::RobotPath;
 use crate::summary::Summary;
 
-/// Calls inside so many calls are listed as one entry. Each entry says by which calls it is reached; without an end to them,
+/// Calls nested deeper are listed as one entry. Each entry names the calls around it; without a limit,
 /// a list of moderate length would not fit into memory.
-pub(crate) const MOST_CALLS: usize = 32;
+pub(crate) const MAX_CALL_DEPTH: usize = 32;
 
-/// The most legs of what is possible after the last known pose.
-const MOST_POSSIBLE: u64 = 1_000;
+/// The maximum number of possible legs listed after the last known pose.
+const MAX_POSSIBLE_LEGS: u64 = 1_000;
 
 /// A walk along the steps of one robot.
 pub(crate) struct Walk<'p> {
@@ -53,13 +53,13 @@ enum Entered {
 
 impl<'p> Walk<'p> {
     /// Starts at the end of `path` and lists so many legs at most.
-    pub(crate) fn new(blocks: &'p [Block], path: RobotPath, most: u64) -> Self {
+    pub(crate) fn new(blocks: &'p [Block], path: RobotPath, max_legs: u64) -> Self {
         let index = ActionIndex { group: 0, run: 0, action: 0 };
         Self {
             blocks,
             path,
             clock: Some(0.0),
-            left: most,
+            left: max_legs,
             index,
             is_way: false,
             frames: Vec::new(),
@@ -112,7 +112,7 @@ impl<'p> Walk<'p> {
         }
         match &node.kind {
             NodeKind::Course(course) => self.list(node.number, course),
-            NodeKind::Unknown(most) => self.lose(node.number, most.as_deref().map(Possible::Bound)),
+            NodeKind::Unknown(limit) => self.lose(node.number, limit.as_deref().map(Possible::Bound)),
             NodeKind::Repeat { count, body } => {
                 self.rounds.push(1);
                 self.counts.push(*count);
@@ -120,7 +120,7 @@ impl<'p> Walk<'p> {
             }
             NodeKind::Branch { ways } => self.whole(node, Some(Possible::Ways(ways))),
             NodeKind::Call { movement } => match self.blocks.get(*movement) {
-                Some(block) if self.calls.len() < MOST_CALLS => {
+                Some(block) if self.calls.len() < MAX_CALL_DEPTH => {
                     self.calls.push(Call { action: node.number, movement: *movement });
                     self.enter(block, Entered::Call);
                 }
@@ -221,7 +221,7 @@ impl<'p> Walk<'p> {
 
     /// Each way up to its own first unknown statement, and that one to its bound.
     fn ways(&self, ways: &'p [Block]) -> Vec<Vec<Leg>> {
-        let mut left = MOST_POSSIBLE;
+        let mut left = MAX_POSSIBLE_LEGS;
         let mut found = Vec::new();
         for way in ways {
             let mut walk = Walk {
@@ -264,8 +264,8 @@ mod tests {
         arc, call, either, forward, left, numbered, repeat, slam, step, turn, two_wheels, until, wait,
     };
     use crate::{
-        Action, LegKind, MOST_ACTIONS, Movement, Plan, Pose, RobotPlan, Step, StepKind, plan_movement,
-        plan_schedule, plan_step, plan_steps,
+        LegKind, MAX_ACTIONS, MotionPrimitive, Movement, Plan, Pose, RobotPlan, Step, StepKind,
+        plan_movement, plan_schedule, plan_step, plan_steps,
     };
 
     fn path(steps: Vec<Step>) -> RobotPath {
@@ -312,7 +312,7 @@ mod tests {
         let path_of = path;
         let slalom = vec![arc(90.0, 0.5, 0.09), arc(-180.0, 0.5, 0.2), arc(90.0, 0.5, 0.09)];
         comes_to(&path_of(slalom), 3, (2.0, 0.0, 0.0));
-        let lane = || step(StepKind::Action(Action::Move { distance: 4.0, speed: 0.3 }));
+        let lane = || step(StepKind::Action(MotionPrimitive::Move { distance: 4.0, speed: 0.3 }));
         let lanes = repeat(5, vec![lane(), arc(-180.0, 0.25, 0.3), lane(), arc(180.0, 0.25, 0.3)]);
         comes_to(&path_of(vec![lanes]), 20, (0.0, -5.0, 0.0));
     }
@@ -367,8 +367,8 @@ mod tests {
         let chain = deep(5_000, 1);
         assert!((chain.end().x - 5_001.0).abs() < 1e-6 && !chain.truncated);
         let last = chain.legs.last().unwrap();
-        assert_eq!((chain.legs.len(), last.kind), (MOST_CALLS + 1, LegKind::Whole));
-        assert_eq!(last.place.calls().len(), MOST_CALLS);
+        assert_eq!((chain.legs.len(), last.kind), (MAX_CALL_DEPTH + 1, LegKind::Whole));
+        assert_eq!(last.place.calls().len(), MAX_CALL_DEPTH);
         let doubled = deep(40, 2);
         assert!((doubled.end().x / (2_f64.powi(41) - 1.0) - 1.0).abs() < 1e-12 && doubled.truncated);
     }
@@ -377,7 +377,7 @@ mod tests {
     fn a_million_million_rounds_are_listed_up_to_a_limit() {
         let rounds = |body| vec![repeat(10_000, vec![repeat(10_000, vec![repeat(10_000, body)])])];
         let long = path(rounds(vec![forward(1.0)]));
-        assert_eq!((long.legs.len() as u64, long.truncated), (MOST_ACTIONS, true));
+        assert_eq!((long.legs.len() as u64, long.truncated), (MAX_ACTIONS, true));
         assert!((long.end().x / 1e12 - 1.0).abs() < 1e-9 && long.unknown_after.is_none());
         assert_eq!(long.legs[99_999].place.rounds(), [1, 10, 10_000]);
         assert_eq!(path(rounds(vec![])), path(vec![]));
@@ -496,11 +496,17 @@ mod tests {
         let listed: Vec<(usize, bool)> =
             plan.robots.iter().map(|path| (path.legs.len(), path.truncated)).collect();
         assert_eq!(listed, [(69_998, true), (2, false), (30_000, false)]);
-        let once =
-            plan_movement(&two_wheels(), Pose::default(), &[Action::Move { distance: 0.1, speed: 0.09 }]);
+        let once = plan_movement(
+            &two_wheels(),
+            Pose::default(),
+            &[MotionPrimitive::Move { distance: 0.1, speed: 0.09 }],
+        );
         let turned = plan.robots[1].legs[1].duration;
-        let metre =
-            plan_movement(&two_wheels(), Pose::default(), &[Action::Move { distance: 1.0, speed: 0.09 }]);
+        let metre = plan_movement(
+            &two_wheels(),
+            Pose::default(),
+            &[MotionPrimitive::Move { distance: 1.0, speed: 0.09 }],
+        );
         let expected = 100_000.0 * once.legs[0].duration + metre.legs[0].duration + turned;
         assert!((plan.duration.unwrap() - expected).abs() < 1e-6 && plan.is_truncated());
         assert!((plan.robots[0].end().x - 10_001.0).abs() < 1e-6);
@@ -510,10 +516,10 @@ mod tests {
         (0..4, -2.0..2.0, 0.05..1.0, 0.05..0.5, any::<bool>()).prop_map(
             |(which, amount, radius, speed, reverse)| {
                 StepKind::Action(match which {
-                    0 => Action::Move { distance: amount, speed },
-                    1 => Action::Turn { angle: amount, speed },
-                    2 => Action::Arc { angle: amount, radius, speed, reverse },
-                    _ => Action::Wait { seconds: amount.abs() },
+                    0 => MotionPrimitive::Move { distance: amount, speed },
+                    1 => MotionPrimitive::Turn { angle: amount, speed },
+                    2 => MotionPrimitive::Arc { angle: amount, radius, speed, reverse },
+                    _ => MotionPrimitive::Wait { seconds: amount.abs() },
                 })
             },
         )
@@ -537,7 +543,7 @@ mod tests {
     }
 
     /// An action of a program that is written out, with its number and where it is.
-    type Written = (usize, Vec<u32>, Vec<(usize, usize)>, Action);
+    type Written = (usize, Vec<u32>, Vec<(usize, usize)>, MotionPrimitive);
 
     /// Writes a program out, round by round; of branches their first way, under the number of the branch.
     fn write_out(steps: &[Step], called: &[Vec<Step>], at: &Written, found: &mut Vec<Written>) {
@@ -586,9 +592,9 @@ mod tests {
             let side = numbered(side.into_iter().filter(|step| !calls_any(step)).collect());
             let (main, called) = (numbered(main), [side]);
             let mut written = Vec::new();
-            write_out(&main, &called, &(0, vec![], vec![], Action::Unknown), &mut written);
+            write_out(&main, &called, &(0, vec![], vec![], MotionPrimitive::Unknown), &mut written);
             prop_assume!(written.len() < 20_000);
-            let actions: Vec<Action> = written.iter().map(|(.., action)| *action).collect();
+            let actions: Vec<MotionPrimitive> = written.iter().map(|(.., action)| *action).collect();
             let flat = plan_movement(&model, Pose::default(), &actions);
             let flat_end = flat.legs.last().map_or(Some(0.0), Leg::end).unwrap();
 

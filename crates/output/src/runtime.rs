@@ -108,12 +108,12 @@ pub fn write_runtime(
         }
         Found::Nothing => {
             fs::create_dir_all(folder)?;
-            put(&path, &current, &Place::Empty)?;
+            put(&path, &current, &PackageLocation::Empty)?;
             Ok(RuntimeFolder::Written(path.clone()))
         }
         Found::Current => Ok(RuntimeFolder::Current(path.clone())),
         Found::Ours { version, added } => {
-            put(&path, &current, &Place::Taken { added: &added })?;
+            put(&path, &current, &PackageLocation::Taken { added: &added })?;
             Ok(RuntimeFolder::Replaced { path: path.clone(), before: version })
         }
         Found::Changed(changed) => Ok(RuntimeFolder::Kept(Kept { path: path.clone(), changed })),
@@ -134,8 +134,8 @@ pub fn provide_runtime(cache: &Path) -> Result<PathBuf, WriteError> {
     let provide = || {
         let place = match inspect(&path, &current)? {
             Found::Current => return Ok(()),
-            Found::Nothing => Place::Empty,
-            Found::Ours { .. } | Found::Changed(_) => Place::Taken { added: &[] },
+            Found::Nothing => PackageLocation::Empty,
+            Found::Ours { .. } | Found::Changed(_) => PackageLocation::Taken { added: &[] },
         };
         fs::create_dir_all(&folder)?;
         put(&path, &current, &place)
@@ -227,7 +227,7 @@ fn list(path: &Path, inside: &str, files: &mut Vec<Entry>) -> io::Result<()> {
 }
 
 /// Where the package is put.
-enum Place<'a> {
+enum PackageLocation<'a> {
     /// There is nothing.
     Empty,
     /// There is a copy to replace, with files that a user added and that are kept.
@@ -235,15 +235,15 @@ enum Place<'a> {
 }
 
 /// Puts the package into its place, with the files that were added to the copy that is there.
-fn put(path: &Path, current: &Record, place: &Place<'_>) -> io::Result<()> {
+fn put(path: &Path, current: &Record, place: &PackageLocation<'_>) -> io::Result<()> {
     let new = NewFolder::begin(path)?;
     for file in files() {
         new.add(&file.path, &file.content)?;
     }
     new.add(RECORD, current.to_json().as_bytes())?;
     match place {
-        Place::Empty => new.finish(path),
-        Place::Taken { added } => {
+        PackageLocation::Empty => new.finish(path),
+        PackageLocation::Taken { added } => {
             for name in *added {
                 new.add(name, &read(path, name)?)?;
             }

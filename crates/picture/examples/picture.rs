@@ -4,7 +4,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use pydslrep_kinematics::{Action, Drive, Pose, TimedPose, plan_movement};
+use pydslrep_kinematics::{Drive, MotionPrimitive, Pose, TimedPose, plan_movement};
 use pydslrep_picture::{Picture, Route};
 use pydslrep_scene::{Robot, Scene, Wheel};
 use pydslrep_trace::Map;
@@ -18,8 +18,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     });
     for (number, robot) in (0..).zip(Scene::empty_floor(robots.collect()).robots) {
         let sign = if number % 2 == 0 { -1.0 } else { 1.0 };
-        let forward = Action::Move { distance: 1.0 + 0.5 * f64::from(number), speed: 0.09 };
-        let turn = Action::Turn { angle: sign * FRAC_PI_2, speed: 0.09 };
+        let forward = MotionPrimitive::Move { distance: 1.0 + 0.5 * f64::from(number), speed: 0.09 };
+        let turn = MotionPrimitive::Turn { angle: sign * FRAC_PI_2, speed: 0.09 };
         let path = plan_movement(&robot.model()?, robot.start, &[forward, turn, forward, turn]);
         let planned = path.sample(100);
         let drift = |(i, TimedPose { time, pose }): (u32, &TimedPose)| {

@@ -96,7 +96,7 @@ impl Picture<'_> {
 
 #[cfg(test)]
 mod tests {
-    use pydslrep_kinematics::{Action, Drive, Geometry, Model, Pose, TimedPose, plan_movement};
+    use pydslrep_kinematics::{Drive, Geometry, Model, MotionPrimitive, Pose, TimedPose, plan_movement};
     use pydslrep_scene::{Body, Shape, Trajectory, Waypoint};
     use pydslrep_trace::Map;
 
@@ -111,8 +111,8 @@ mod tests {
     fn square() -> Route {
         let geometry = Geometry { track: 0.3, wheelbase: 0.25 };
         let model = Model::new(Drive::TwoWheel, &[0.035, 0.035], geometry).unwrap();
-        let turn = Action::Turn { angle: std::f64::consts::FRAC_PI_2, speed: 0.09 };
-        let side = [Action::Move { distance: 1.0, speed: 0.09 }, turn];
+        let turn = MotionPrimitive::Turn { angle: std::f64::consts::FRAC_PI_2, speed: 0.09 };
+        let side = [MotionPrimitive::Move { distance: 1.0, speed: 0.09 }, turn];
         let planned = plan_movement(&model, Pose::default(), &side.repeat(3)).sample(50);
         let off =
             |timed: &TimedPose| TimedPose { pose: Pose { x: timed.pose.x + 0.002, ..timed.pose }, ..*timed };

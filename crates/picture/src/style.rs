@@ -33,12 +33,12 @@ pub(crate) fn pixels(value: f64) -> f64 {
     (value * 100.0).round() / 100.0
 }
 
-/// A text shortened to `most` characters.
-pub(crate) fn shorten(text: &str, most: usize) -> String {
-    if text.chars().count() <= most {
+/// A text shortened to `max_length` characters.
+pub(crate) fn shorten(text: &str, max_length: usize) -> String {
+    if text.chars().count() <= max_length {
         return text.to_owned();
     }
-    let short: String = text.chars().take(most.saturating_sub(1)).collect();
+    let short: String = text.chars().take(max_length.saturating_sub(1)).collect();
     format!("{short}…")
 }
 

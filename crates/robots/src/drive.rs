@@ -1,7 +1,7 @@
 //! The types by which robots are known elsewhere.
 
 use crate::RobotType;
-use crate::robot_type::{FOUR_MECANUM, FOUR_WHEEL, TWO_WHEEL};
+use crate::robot_type::{FOUR_WHEEL, MECANUM, TWO_WHEEL};
 
 /// A type of robot: how its driven wheels are laid out. What that means is in its row, [`Drive::row`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -11,19 +11,19 @@ pub enum Drive {
     /// Four standard wheels, skid-steer (`fw`).
     FourWheel,
     /// Four mecanum wheels whose rollers form an X seen from above (`fwh`).
-    FourMecanum,
+    Mecanum,
 }
 
 impl Drive {
     /// All types, in the order in which they are listed for people, and in which wheels without a type are tried.
-    pub const ALL: [Self; 3] = [Self::TwoWheel, Self::FourWheel, Self::FourMecanum];
+    pub const ALL: [Self; 3] = [Self::TwoWheel, Self::FourWheel, Self::Mecanum];
 
     /// Its row of the table.
     pub const fn row(self) -> &'static RobotType {
         match self {
             Self::TwoWheel => &TWO_WHEEL,
             Self::FourWheel => &FOUR_WHEEL,
-            Self::FourMecanum => &FOUR_MECANUM,
+            Self::Mecanum => &MECANUM,
         }
     }
 
@@ -99,7 +99,7 @@ mod tests {
     fn wheels_make_a_type() {
         assert_eq!(Drive::from_wheels(&[false; 2]), Some(Drive::TwoWheel));
         assert_eq!(Drive::from_wheels(&[false; 4]), Some(Drive::FourWheel));
-        assert_eq!(Drive::from_wheels(&[true; 4]), Some(Drive::FourMecanum));
+        assert_eq!(Drive::from_wheels(&[true; 4]), Some(Drive::Mecanum));
         assert_eq!(Drive::from_wheels(&[true; 2]), None);
         assert_eq!(Drive::from_wheels(&[true, false, false, false]), None);
         assert_eq!(Drive::from_wheels(&[]), None);
@@ -110,9 +110,9 @@ mod tests {
         let unasked = || unreachable!("there is no other type");
         assert_eq!(Drive::inferred(2, unasked), Some(Drive::TwoWheel));
         assert_eq!(Drive::inferred(4, || false), Some(Drive::FourWheel));
-        assert_eq!(Drive::inferred(4, || true), Some(Drive::FourMecanum));
+        assert_eq!(Drive::inferred(4, || true), Some(Drive::Mecanum));
         assert_eq!(Drive::inferred(3, unasked), None);
-        assert_eq!(Drive::FourWheel.driven(|| true), Drive::FourMecanum);
+        assert_eq!(Drive::FourWheel.driven(|| true), Drive::Mecanum);
         assert_eq!(Drive::FourWheel.driven(|| false), Drive::FourWheel);
         assert_eq!(Drive::TwoWheel.driven(unasked), Drive::TwoWheel);
     }

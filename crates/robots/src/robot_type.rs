@@ -93,7 +93,7 @@ pub(crate) const FOUR_WHEEL: RobotType = RobotType {
         wheel("right_rear", -1.0, -1.0, 0.0),
     ],
     mecanum: false,
-    on_mecanum: Some(Drive::FourMecanum),
+    on_mecanum: Some(Drive::Mecanum),
     explores: false,
     class: "FourWheelRobot",
     runtime_drive: "FourWheelDrive",
@@ -102,8 +102,8 @@ pub(crate) const FOUR_WHEEL: RobotType = RobotType {
     lateral_friction: 1.0,
 };
 
-pub(crate) const FOUR_MECANUM: RobotType = RobotType {
-    drive: Drive::FourMecanum,
+pub(crate) const MECANUM: RobotType = RobotType {
+    drive: Drive::Mecanum,
     word: "fwh",
     noun: "a mecanum robot",
     label: "Mecanum drive",
@@ -117,7 +117,7 @@ pub(crate) const FOUR_MECANUM: RobotType = RobotType {
     on_mecanum: None,
     explores: false,
     class: "MecanumRobot",
-    runtime_drive: "FourMecanumDrive",
+    runtime_drive: "MecanumDrive",
     equations: &[
         "left front  = (vx − vy − K ω) / r",
         "left rear   = (vx + vy − K ω) / r",

@@ -2,14 +2,14 @@
 
 use pydslrep_kinematics::{ActionIndex, Leg, LegKind, Place, Plan, Pose, RobotPath};
 
-use crate::{Body, Scene, Space, Thing, Trajectory, distance_between};
+use crate::{Body, Scene, SceneObject, Space, Trajectory, distance_between};
 
 /// Bodies nearer to each other than this collide, metres: in a run, contact stops robots there.
 const TOUCH: f64 = 0.001;
 
-/// The most distances computed for one robot, or for two things that move; collisions after them are not found. A path takes some for each
-/// metre, and more only along something that it nearly touches.
-const MOST_STEPS: u32 = 20_000;
+/// The maximum number of distances computed for one robot, or for a pair of moving bodies; later collisions are not found. A
+/// path takes some for each metre, and more only along something that it nearly touches.
+const MAX_STEPS: u32 = 20_000;
 
 /// A robot that would collide with something.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,7 +25,7 @@ pub struct Collision {
     /// Where it is.
     pub pose: Pose,
     /// The robot or obstacle that it collides with.
-    pub with: Thing,
+    pub with: SceneObject,
     /// The other robot's action; `None` if it stands still, or if it is not a robot.
     pub other_action: Option<ActionIndex>,
     /// In which rounds and calls that is.
@@ -36,8 +36,8 @@ pub struct Collision {
 /// and for each two robots their first collision. What follows from the first is not reported. In the order of robots;
 /// none if the scene has collisions switched off.
 ///
-/// Obstacles that move are met where they are at that time: in actions that start at a known one. Those that run into a
-/// robot between its actions are not found.
+/// Moving obstacles are where they are at the time of an action, if its start is known. Collisions with one while the robot
+/// rests between two actions are not found.
 pub fn collisions(scene: &Scene, plan: &Plan) -> Vec<Collision> {
     if !scene.collisions {
         return Vec::new();
@@ -95,14 +95,15 @@ fn with_obstacle(obstacles: &Obstacles, robot: usize, body: Body, path: &RobotPa
     for leg in path.legs.iter().filter(|leg| leg.kind != LegKind::Whole) {
         let mut first = with_fixed(&obstacles.fixed, body, leg, &mut steps);
         if let Some(start) = leg.start {
-            let way = Way { start, speed: leg.top_speed(reach(body)), pose: |seconds| leg.pose_at(seconds) };
+            let way =
+                BodyMotion { start, speed: leg.top_speed(reach(body)), pose: |seconds| leg.pose_at(seconds) };
             for other in &mut moving {
                 let until = first.map_or(leg.duration, |(seconds, _)| seconds);
                 first = other.meet(body, &way, until).map(|seconds| (seconds, other.obstacle)).or(first);
             }
         }
         if let Some((seconds, obstacle)) = first {
-            let (with, time) = (Thing::Obstacle(obstacle), leg.start.map(|start| start + seconds));
+            let (with, time) = (SceneObject::Obstacle(obstacle), leg.start.map(|start| start + seconds));
             let (action, place, pose) = (leg.index, leg.place.clone(), leg.pose_at(seconds));
             let (other_action, other_place) = (None, Place::default());
             return Some(Collision { robot, action, place, time, pose, with, other_action, other_place });
@@ -116,7 +117,7 @@ fn with_obstacle(obstacles: &Obstacles, robot: usize, body: Body, path: &RobotPa
 fn with_fixed(space: &Space, body: Body, leg: &Leg, steps: &mut u32) -> Option<(f64, usize)> {
     let speed = leg.top_speed(reach(body));
     let mut seconds = 0.0;
-    while seconds < leg.duration && *steps < MOST_STEPS {
+    while seconds < leg.duration && *steps < MAX_STEPS {
         *steps += 1;
         let left = speed * (leg.duration - seconds);
         let near = space.nearest(body, leg.pose_at(seconds), left + TOUCH)?;
@@ -129,7 +130,7 @@ fn with_fixed(space: &Space, body: Body, leg: &Leg, steps: &mut u32) -> Option<(
 }
 
 /// The motion of a body for some time.
-struct Way<P: Fn(f64) -> Pose> {
+struct BodyMotion<P: Fn(f64) -> Pose> {
     /// Seconds since the start of the run.
     start: f64,
     /// The highest speed of any of its points.
@@ -140,13 +141,13 @@ struct Way<P: Fn(f64) -> Pose> {
 
 impl Moving {
     /// The seconds of a way after which a body and the obstacle meet, if they do before `until`: the same search with the
-    /// speeds of both, piece by piece of the obstacle's path. A body at rest is met, too.
-    fn meet(&mut self, body: Body, way: &Way<impl Fn(f64) -> Pose>, until: f64) -> Option<f64> {
+    /// speeds of both, segment by segment of the obstacle's path. A body at rest is met, too.
+    fn meet(&mut self, body: Body, way: &BodyMotion<impl Fn(f64) -> Pose>, until: f64) -> Option<f64> {
         let mut seconds = 0.0;
-        while seconds < until && self.steps < MOST_STEPS {
+        while seconds < until && self.steps < MAX_STEPS {
             self.steps += 1;
-            let piece = self.trajectory.piece(way.start + seconds);
-            let (end, speed) = ((piece.until - way.start).min(until), way.speed + piece.speed);
+            let segment = self.trajectory.segment(way.start + seconds);
+            let (end, speed) = ((segment.until - way.start).min(until), way.speed + segment.speed);
             self.space.move_to(way.start + seconds);
             let reachable = speed * (end - seconds).max(0.0) + TOUCH;
             seconds = match self.space.nearest(body, (way.pose)(seconds), reachable) {
@@ -169,7 +170,7 @@ fn of_two(a: (usize, Body, &RobotPath), b: (usize, Body, &RobotPath)) -> Option<
     let (first, second) = (Timetable::of(a.2), Timetable::of(b.2));
     let horizon = first.known_until.min(second.known_until).min(first.end().max(second.end()));
     let mut time = 0.0;
-    for _ in 0..MOST_STEPS {
+    for _ in 0..MAX_STEPS {
         if time >= horizon {
             return None;
         }
@@ -192,7 +193,7 @@ fn of_two(a: (usize, Body, &RobotPath), b: (usize, Body, &RobotPath)) -> Option<
                 place: leg.place.clone(),
                 time: Some(time),
                 pose: me.pose,
-                with: Thing::Robot(other),
+                with: SceneObject::Robot(other),
                 other_action: you.leg.map(|leg| leg.index),
                 other_place: you.leg.map(|leg| leg.place.clone()).unwrap_or_default(),
             });
@@ -261,13 +262,13 @@ mod tests {
     use std::f64::consts::FRAC_PI_2;
 
     use proptest::prelude::*;
-    use pydslrep_kinematics::{Action, Drive, RobotPlan, Run, motion, plan};
+    use pydslrep_kinematics::{Drive, MotionPrimitive, RobotPlan, Run, motion, plan};
 
     use super::*;
     use crate::{Obstacle, Robot, Shape, Waypoint, Wheel};
 
-    const AHEAD: Action = Action::Move { distance: 2.0, speed: 0.1 };
-    const LEFT: Action = Action::Turn { angle: FRAC_PI_2, speed: motion::RIM_SPEED };
+    const AHEAD: MotionPrimitive = MotionPrimitive::Move { distance: 2.0, speed: 0.1 };
+    const LEFT: MotionPrimitive = MotionPrimitive::Turn { angle: FRAC_PI_2, speed: motion::RIM_SPEED };
 
     fn scene(starts: &[Pose], obstacles: Vec<Obstacle>) -> Scene {
         let robot = |(index, start): (usize, &Pose)| {
@@ -278,13 +279,13 @@ mod tests {
     }
 
     /// Groups of runs: each a robot with its actions.
-    fn found(scene: &Scene, schedule: &[&[(usize, &[Action])]]) -> Vec<Collision> {
+    fn found(scene: &Scene, schedule: &[&[(usize, &[MotionPrimitive])]]) -> Vec<Collision> {
         let robots: Vec<_> = scene
             .robots
             .iter()
             .map(|robot| RobotPlan { model: robot.model().unwrap(), start: robot.start })
             .collect();
-        let group = |group: &&[(usize, &[Action])]| {
+        let group = |group: &&[(usize, &[MotionPrimitive])]| {
             group.iter().map(|&(robot, actions)| Run { robot, actions: actions.to_vec() }).collect()
         };
         let schedule: Vec<Vec<Run>> = schedule.iter().map(group).collect();
@@ -295,29 +296,35 @@ mod tests {
     fn a_wall_is_hit_when_and_where_the_body_touches_it() {
         let wall = Obstacle::wall("w", (-1.0, 1.2), (1.0, 1.2), 1e-6);
         let scene = scene(&[Pose::default()], vec![wall]);
-        let met = found(&scene, &[&[(0, &[AHEAD, LEFT])], &[(0, &[AHEAD])]]);
-        assert_eq!(met, [], "it passes the end of the wall");
+        let collisions = found(&scene, &[&[(0, &[AHEAD, LEFT])], &[(0, &[AHEAD])]]);
+        assert_eq!(collisions, [], "it passes the end of the wall");
         let scene = Scene {
             robots: scene.robots,
             obstacles: vec![Obstacle::wall("w", (1.0, 1.2), (3.0, 1.2), 1e-6)],
             ..Scene::default()
         };
-        let met = found(&scene, &[&[(0, &[AHEAD, LEFT])], &[(0, &[AHEAD, AHEAD])]]);
-        let [met] = met.as_slice() else { panic!("{met:?}") };
-        assert_eq!((met.robot, met.with), (0, Thing::Obstacle(0)));
-        assert_eq!(met.action, ActionIndex { group: 1, run: 0, action: 0 });
-        assert!((met.pose.y - 1.05).abs() < 0.001 && (met.pose.x - 2.0).abs() < 1e-9, "{met:?}");
+        let collisions = found(&scene, &[&[(0, &[AHEAD, LEFT])], &[(0, &[AHEAD, AHEAD])]]);
+        let [collision] = collisions.as_slice() else { panic!("{collisions:?}") };
+        assert_eq!((collision.robot, collision.with), (0, SceneObject::Obstacle(0)));
+        assert_eq!(collision.action, ActionIndex { group: 1, run: 0, action: 0 });
+        assert!(
+            (collision.pose.y - 1.05).abs() < 0.001 && (collision.pose.x - 2.0).abs() < 1e-9,
+            "{collision:?}"
+        );
         let before = 2.0 / 0.1 + 0.2 + FRAC_PI_2 * 0.15 / 0.09 + 0.18 + 2.0 * motion::REST;
         let after = 1.05 / 0.1 + 0.1;
-        assert!(met.time.is_some_and(|time| (time - before - after).abs() < 0.02), "{met:?}");
+        assert!(collision.time.is_some_and(|time| (time - before - after).abs() < 0.02), "{collision:?}");
     }
 
     #[test]
     fn a_corner_that_turns_into_something_hits_it() {
         let mut scene = scene(&[Pose::default()], vec![Obstacle::wall("w", (-1.0, 0.21), (1.0, 0.21), 0.1)]);
         scene.robots[0].body = Body { length: 0.5, width: 0.3 };
-        let met = found(&scene, &[&[(0, &[LEFT])]]);
-        assert!(met.len() == 1 && met[0].pose.theta > 0.0 && met[0].pose.theta < 0.3, "{met:?}");
+        let collisions = found(&scene, &[&[(0, &[LEFT])]]);
+        assert!(
+            collisions.len() == 1 && collisions[0].pose.theta > 0.0 && collisions[0].pose.theta < 0.3,
+            "{collisions:?}"
+        );
         scene.collisions = false;
         assert_eq!(found(&scene, &[&[(0, &[LEFT])]]), []);
     }
@@ -325,21 +332,30 @@ mod tests {
     #[test]
     fn robots_collide_only_if_both_are_there_at_the_same_time() {
         let scene = scene(&[Pose::new(-1.0, 0.0, 0.0), Pose::new(0.0, -1.0, FRAC_PI_2)], vec![]);
-        let met = found(&scene, &[&[(0, &[AHEAD]), (1, &[AHEAD])]]);
-        let [met] = met.as_slice() else { panic!("{met:?}") };
-        assert!(met.robot == 0 && met.with == Thing::Robot(1) && met.other_action.is_some());
-        let time = met.time.unwrap();
-        assert!((met.pose.x + 0.3).abs() < 0.002 && (time - 7.1).abs() < 0.05, "{met:?}");
+        let collisions = found(&scene, &[&[(0, &[AHEAD]), (1, &[AHEAD])]]);
+        let [collision] = collisions.as_slice() else { panic!("{collisions:?}") };
+        assert!(
+            collision.robot == 0
+                && collision.with == SceneObject::Robot(1)
+                && collision.other_action.is_some()
+        );
+        let time = collision.time.unwrap();
+        assert!((collision.pose.x + 0.3).abs() < 0.002 && (time - 7.1).abs() < 0.05, "{collision:?}");
         assert_eq!(found(&scene, &[&[(0, &[AHEAD])], &[(1, &[AHEAD])]]), []);
     }
 
     #[test]
     fn a_robot_that_stands_still_is_hit_too() {
         let scene = scene(&[Pose::new(1.0, 0.0, 0.0), Pose::default()], vec![]);
-        let met = found(&scene, &[&[(1, &[AHEAD])]]);
-        let [met] = met.as_slice() else { panic!("{met:?}") };
-        assert!(met.robot == 1 && met.with == Thing::Robot(0) && met.other_action.is_none(), "{met:?}");
-        assert!((met.pose.x - 0.7).abs() < 0.002, "{met:?}");
+        let collisions = found(&scene, &[&[(1, &[AHEAD])]]);
+        let [collision] = collisions.as_slice() else { panic!("{collisions:?}") };
+        assert!(
+            collision.robot == 1
+                && collision.with == SceneObject::Robot(0)
+                && collision.other_action.is_none(),
+            "{collision:?}"
+        );
+        assert!((collision.pose.x - 0.7).abs() < 0.002, "{collision:?}");
     }
 
     /// Two robots whose paths cross at the origin, 1 m ahead of each.
@@ -351,32 +367,38 @@ mod tests {
     fn robots_do_not_collide_after_an_action_of_unknown_duration() {
         // Where each robot is once the unknown action begins is not known, nor when others start after it.
         for schedule in [
-            [&[(0, &[Action::Unknown, AHEAD][..]), (1, &[AHEAD])][..], &[]],
-            [&[(0, &[AHEAD]), (1, &[Action::Unknown, AHEAD])], &[]],
-            [&[(0, &[Action::Unknown])], &[(0, &[AHEAD]), (1, &[AHEAD])]],
-            [&[(0, &[Action::Unknown])], &[(1, &[AHEAD])]],
+            [&[(0, &[MotionPrimitive::Unknown, AHEAD][..]), (1, &[AHEAD])][..], &[]],
+            [&[(0, &[AHEAD]), (1, &[MotionPrimitive::Unknown, AHEAD])], &[]],
+            [&[(0, &[MotionPrimitive::Unknown])], &[(0, &[AHEAD]), (1, &[AHEAD])]],
+            [&[(0, &[MotionPrimitive::Unknown])], &[(1, &[AHEAD])]],
         ] {
             assert_eq!(found(&crossing(), &schedule), [], "{schedule:?}");
         }
         // A third robot's unknown action leaves the two where they are, but not when.
         let mut scene = crossing();
         scene.robots.push(Robot { start: Pose::new(5.0, 5.0, 0.0), ..scene.robots[0].clone() });
-        let before: &[(usize, &[Action])] = &[(2, &[Action::Unknown])];
+        let before: &[(usize, &[MotionPrimitive])] = &[(2, &[MotionPrimitive::Unknown])];
         assert_eq!(found(&scene, &[before, &[(0, &[AHEAD]), (1, &[AHEAD])]]), []);
-        let met = found(&scene, &[&[(0, &[AHEAD]), (1, &[AHEAD]), (2, &[Action::Unknown])]]);
-        assert!(met.len() == 1 && met[0].time.is_some(), "it delays nobody in its own group: {met:?}");
+        let collisions = found(&scene, &[&[(0, &[AHEAD]), (1, &[AHEAD]), (2, &[MotionPrimitive::Unknown])]]);
+        assert!(
+            collisions.len() == 1 && collisions[0].time.is_some(),
+            "it delays nobody in its own group: {collisions:?}"
+        );
     }
 
     #[test]
     fn robots_collide_before_an_action_of_unknown_duration() {
-        let met = found(&crossing(), &[&[(0, &[AHEAD, Action::Unknown]), (1, &[AHEAD])]]);
-        let [met] = met.as_slice() else { panic!("{met:?}") };
-        assert!(met.robot == 0 && met.with == Thing::Robot(1), "{met:?}");
-        assert!(met.time.is_some_and(|time| (time - 7.1).abs() < 0.05), "{met:?}");
+        let collisions = found(&crossing(), &[&[(0, &[AHEAD, MotionPrimitive::Unknown]), (1, &[AHEAD])]]);
+        let [collision] = collisions.as_slice() else { panic!("{collisions:?}") };
+        assert!(collision.robot == 0 && collision.with == SceneObject::Robot(1), "{collision:?}");
+        assert!(collision.time.is_some_and(|time| (time - 7.1).abs() < 0.05), "{collision:?}");
         // One that turns on the spot or explores from there may be anywhere when the other comes by.
-        let to_the_middle = Action::Move { distance: 1.0, speed: 0.1 };
-        let later = Action::Move { distance: 2.0, speed: 0.01 };
-        assert_eq!(found(&crossing(), &[&[(0, &[to_the_middle, Action::Unknown]), (1, &[later])]]), []);
+        let to_the_middle = MotionPrimitive::Move { distance: 1.0, speed: 0.1 };
+        let later = MotionPrimitive::Move { distance: 2.0, speed: 0.01 };
+        assert_eq!(
+            found(&crossing(), &[&[(0, &[to_the_middle, MotionPrimitive::Unknown]), (1, &[later])]]),
+            []
+        );
         assert_eq!(found(&crossing(), &[&[(0, &[to_the_middle]), (1, &[later])]]).len(), 1);
     }
 
@@ -384,10 +406,15 @@ mod tests {
     fn an_obstacle_on_a_known_path_is_hit_at_an_unknown_time() {
         let wall = Obstacle::wall("w", (1.0, -1.0), (1.0, 1.0), 0.1);
         let scene = scene(&[Pose::default(), Pose::new(-5.0, -1.0, FRAC_PI_2)], vec![wall]);
-        let met = found(&scene, &[&[(1, &[Action::Unknown])], &[(0, &[AHEAD])]]);
-        assert!(met.len() == 1 && met[0].time.is_none() && met[0].with == Thing::Obstacle(0), "{met:?}");
-        assert!((met[0].pose.x - 0.8).abs() < 0.001, "{met:?}");
-        assert_eq!(found(&scene, &[&[(0, &[Action::Unknown, AHEAD])]]), [], "nor is its path");
+        let collisions = found(&scene, &[&[(1, &[MotionPrimitive::Unknown])], &[(0, &[AHEAD])]]);
+        assert!(
+            collisions.len() == 1
+                && collisions[0].time.is_none()
+                && collisions[0].with == SceneObject::Obstacle(0),
+            "{collisions:?}"
+        );
+        assert!((collisions[0].pose.x - 0.8).abs() < 0.001, "{collisions:?}");
+        assert_eq!(found(&scene, &[&[(0, &[MotionPrimitive::Unknown, AHEAD])]]), [], "nor is its path");
     }
 
     /// A post of 10 cm that moves.
@@ -399,30 +426,30 @@ mod tests {
 
     #[test]
     fn an_obstacle_that_moves_is_met_where_it_is_at_that_time() {
-        let met = |rows: &[[f64; 3]], repeats| {
+        let found_in = |rows: &[[f64; 3]], repeats| {
             let scene = scene(&[Pose::default()], vec![post(rows, repeats)]);
             found(&scene, &[&[(0, &[AHEAD, AHEAD])]])
         };
         // It steps aside before the robot, which is there after 7.6 s, or after that.
-        assert_eq!(met(&[[0.0, 1.0, 0.0], [4.0, 1.0, 0.0], [6.0, 1.0, 1.0]], false), []);
-        let found = met(&[[0.0, 1.0, 0.0], [9.0, 1.0, 0.0], [11.0, 1.0, 1.0]], false);
+        assert_eq!(found_in(&[[0.0, 1.0, 0.0], [4.0, 1.0, 0.0], [6.0, 1.0, 1.0]], false), []);
+        let found = found_in(&[[0.0, 1.0, 0.0], [9.0, 1.0, 0.0], [11.0, 1.0, 1.0]], false);
         let [collision] = found.as_slice() else { panic!("{found:?}") };
         assert!((collision.pose.x - 0.75).abs() < 0.002, "{collision:?}");
         assert!(collision.time.is_some_and(|time| (time - 7.6).abs() < 0.02), "{collision:?}");
         // It comes back into the way of the second move, which ends at 4 m.
         let aside = [[0.0, 3.0, 0.0], [5.0, 3.0, 1.0]];
-        assert_eq!(met(&aside, false), []);
-        let found = met(&aside, true);
+        assert_eq!(found_in(&aside, false), []);
+        let found = found_in(&aside, true);
         assert!(found.len() == 1 && found[0].action.action == 1, "{found:?}");
         // It meets the robot from the front: their speeds add up.
-        let found = met(&[[0.0, 2.1, 0.0], [10.0, 0.1, 0.0]], false);
+        let found = found_in(&[[0.0, 2.1, 0.0], [10.0, 0.1, 0.0]], false);
         let [collision] = found.as_slice() else { panic!("{found:?}") };
         assert!(
             collision.time.is_some_and(|time| (time - (1.85 + 0.01) / 0.3).abs() < 0.03),
             "{collision:?}"
         );
         // However fast, it does not pass through.
-        let found = met(&[[0.0, 0.5, 50.0], [5.0, 0.5, 50.0], [5.001, 0.5, -50.0]], false);
+        let found = found_in(&[[0.0, 0.5, 50.0], [5.0, 0.5, 50.0], [5.001, 0.5, -50.0]], false);
         assert!(
             found.len() == 1 && found[0].time.is_some_and(|time| (5.0..5.001).contains(&time)),
             "{found:?}"
@@ -434,8 +461,11 @@ mod tests {
         let wall = |x| Obstacle::wall("w", (x, -1.0), (x, 1.0), 0.1);
         for (x, first) in [(0.9, 0), (1.5, 1)] {
             let scene = scene(&[Pose::default()], vec![wall(x), post(&[[0.0, 1.2, 0.0]], false)]);
-            let met = found(&scene, &[&[(0, &[AHEAD])]]);
-            assert!(met.len() == 1 && met[0].with == Thing::Obstacle(first), "{x}: {met:?}");
+            let collisions = found(&scene, &[&[(0, &[AHEAD])]]);
+            assert!(
+                collisions.len() == 1 && collisions[0].with == SceneObject::Obstacle(first),
+                "{x}: {collisions:?}"
+            );
         }
     }
 
@@ -445,12 +475,12 @@ mod tests {
             &[Pose::default(), Pose::new(-5.0, -1.0, FRAC_PI_2)],
             vec![post(&[[0.0, 1.0, 0.0], [9e5, 1.0, 0.0]], true)],
         );
-        assert_eq!(found(&scene, &[&[(1, &[Action::Unknown])], &[(0, &[AHEAD])]]), []);
+        assert_eq!(found(&scene, &[&[(1, &[MotionPrimitive::Unknown])], &[(0, &[AHEAD])]]), []);
         assert_eq!(found(&scene, &[&[(0, &[AHEAD])]]).len(), 1);
     }
 
     #[test]
-    fn nothing_is_said_of_what_is_not_listed() {
+    fn collisions_after_the_end_of_a_truncated_list_are_not_reported() {
         let wall = Obstacle::wall("w", (3.0, -1.0), (3.0, 1.0), 0.1);
         let scene = scene(&[Pose::default(), Pose::new(2.0, -2.0, FRAC_PI_2)], vec![wall]);
         let robots: Vec<_> = scene
@@ -459,12 +489,12 @@ mod tests {
             .map(|robot| RobotPlan { model: robot.model().unwrap(), start: robot.start })
             .collect();
         // It comes to where the other one is after its first move, which has gone on by then.
-        let slowly = Action::Move { distance: 2.0, speed: 0.05 };
+        let slowly = MotionPrimitive::Move { distance: 2.0, speed: 0.05 };
         let runs =
             vec![Run { robot: 0, actions: vec![AHEAD, AHEAD] }, Run { robot: 1, actions: vec![slowly] }];
         let mut plan = plan(&robots, &[runs]).unwrap();
-        let met = collisions(&scene, &plan);
-        assert!(met.len() == 1 && met[0].with == Thing::Obstacle(0), "{met:?}");
+        let found = collisions(&scene, &plan);
+        assert!(found.len() == 1 && found[0].with == SceneObject::Obstacle(0), "{found:?}");
         plan.robots[0].legs.truncate(1);
         plan.robots[0].truncated = true;
         assert_eq!(collisions(&scene, &plan), [], "nor does it stay where the list ends");
@@ -473,13 +503,13 @@ mod tests {
     #[test]
     fn the_search_has_a_bound() {
         // Along a wall that is half a millimetre from a touch, each step is a millimetre.
-        let met = |x: f64| {
+        let found_in = |x: f64| {
             let beside = Obstacle::wall("beside", (-1.0, 0.2015), (40.0, 0.2015), 0.1);
             let ahead = Obstacle::wall("ahead", (x, -1.0), (x, 0.0), 0.1);
             let scene = scene(&[Pose::default()], vec![beside, ahead]);
-            found(&scene, &[&[(0, &[Action::Move { distance: 30.0, speed: 0.1 }])]]).len()
+            found(&scene, &[&[(0, &[MotionPrimitive::Move { distance: 30.0, speed: 0.1 }])]]).len()
         };
-        assert_eq!((met(15.0), met(25.0)), (1, 0));
+        assert_eq!((found_in(15.0), found_in(25.0)), (1, 0));
     }
 
     #[test]
@@ -487,7 +517,7 @@ mod tests {
         let scene = scene(&[], vec![post(&[[0.0, 3.0, 0.0], [10.0, 3.0, 0.0], [40.0, 0.0, 0.0]], false)]);
         let mut obstacles = Obstacles::of(&scene);
         let body = Body { length: 0.3, width: 0.3 };
-        let way = |start| Way { start, speed: 0.0, pose: |_: f64| Pose::default() };
+        let way = |start| BodyMotion { start, speed: 0.0, pose: |_: f64| Pose::default() };
         let seconds = obstacles.moving[0].meet(body, &way(5.0), 90.0).unwrap();
         assert!((seconds - (5.0 + 27.5)).abs() < 0.02, "{seconds}");
         assert_eq!(obstacles.moving[0].meet(body, &way(5.0), 30.0), None);
@@ -510,21 +540,24 @@ mod tests {
         for corners in [corners.to_vec(), corners.into_iter().rev().collect()] {
             let bay = Obstacle::fixed("u", Pose::default(), Shape::Polygon(corners));
             let scene = scene(&[Pose::default()], vec![bay]);
-            let met = found(&scene, &[&[(0, &[AHEAD])]]);
-            assert!(met.len() == 1 && (met[0].pose.x - 1.65).abs() < 0.001, "{met:?}");
-            let shorter = Action::Move { distance: 1.6, speed: 0.1 };
+            let collisions = found(&scene, &[&[(0, &[AHEAD])]]);
+            assert!(collisions.len() == 1 && (collisions[0].pose.x - 1.65).abs() < 0.001, "{collisions:?}");
+            let shorter = MotionPrimitive::Move { distance: 1.6, speed: 0.1 };
             assert_eq!(found(&scene, &[&[(0, &[shorter])]]), []);
-            let across = Action::Move { distance: 1.0, speed: 0.1 };
-            let met = found(&scene, &[&[(0, &[across, LEFT, across])]]);
-            assert!(met.len() == 1 && (met[0].pose.y - 0.25).abs() < 0.001, "the arm: {met:?}");
+            let across = MotionPrimitive::Move { distance: 1.0, speed: 0.1 };
+            let collisions = found(&scene, &[&[(0, &[across, LEFT, across])]]);
+            assert!(
+                collisions.len() == 1 && (collisions[0].pose.y - 0.25).abs() < 0.001,
+                "the arm: {collisions:?}"
+            );
         }
     }
 
     prop_compose! {
-        fn actions()(moves in prop::collection::vec((0..3, -2.0..2.0, 0.05..0.5), 1..5)) -> Vec<Action> {
+        fn actions()(moves in prop::collection::vec((0..3, -2.0..2.0, 0.05..0.5), 1..5)) -> Vec<MotionPrimitive> {
             let action = |&(which, amount, speed): &(i32, f64, f64)| match which {
-                0 => Action::Turn { angle: amount, speed: motion::RIM_SPEED },
-                _ => Action::Move { distance: amount, speed },
+                0 => MotionPrimitive::Turn { angle: amount, speed: motion::RIM_SPEED },
+                _ => MotionPrimitive::Move { distance: amount, speed },
             };
             moves.iter().map(action).collect()
         }
@@ -546,17 +579,17 @@ mod tests {
             let scene =
                 scene(&[Pose::default(), Pose::new(x, y, theta)], vec![hook, wall, post(&way, repeats)]);
             prop_assume!(scene.overlaps().is_empty());
-            let groups: Vec<Vec<(usize, &[Action])>> = if together {
+            let groups: Vec<Vec<(usize, &[MotionPrimitive])>> = if together {
                 vec![vec![(0, &first), (1, &second)]]
             } else {
                 vec![vec![(0, &first)], vec![(1, &second)]]
             };
-            let schedule: Vec<&[(usize, &[Action])]> = groups.iter().map(Vec::as_slice).collect();
+            let schedule: Vec<&[(usize, &[MotionPrimitive])]> = groups.iter().map(Vec::as_slice).collect();
             let found = found(&scene, &schedule);
 
             let robots: Vec<_> =
                 scene.robots.iter().map(|robot| RobotPlan { model: robot.model().unwrap(), start: robot.start }).collect();
-            let runs = |group: &Vec<(usize, &[Action])>| {
+            let runs = |group: &Vec<(usize, &[MotionPrimitive])>| {
                 group.iter().map(|&(robot, actions)| Run { robot, actions: actions.to_vec() }).collect()
             };
             let plan = plan(&robots, &groups.iter().map(runs).collect::<Vec<Vec<Run>>>()).unwrap();
@@ -573,10 +606,10 @@ mod tests {
                     .map(|(robot, path)| (robot.body, pose_at(path, time)))
                     .collect();
                 let mut see = |what: (usize, usize), distance: f64| {
-                    let (nearest, met) = looked.entry(what).or_insert((f64::INFINITY, f64::INFINITY));
+                    let (nearest, contact) = looked.entry(what).or_insert((f64::INFINITY, f64::INFINITY));
                     *nearest = nearest.min(distance);
                     if distance < TOUCH + doubt {
-                        *met = met.min(time);
+                        *contact = contact.min(time);
                     }
                 };
                 space.move_to(time);
@@ -590,17 +623,17 @@ mod tests {
                 see((0, 1), distance_between(bodies[0], bodies[1]));
                 time += step;
             }
-            for (what, (nearest, met)) in looked {
+            for (what, (nearest, contact)) in looked {
                 let collision = found.iter().find(|collision| match collision.with {
-                    Thing::Obstacle(_) => what == (collision.robot, 9),
-                    Thing::Robot(_) => what.1 == 1,
+                    SceneObject::Obstacle(_) => what == (collision.robot, 9),
+                    SceneObject::Robot(_) => what.1 == 1,
                 });
                 match collision {
                     None => prop_assert!(nearest >= TOUCH - 1e-9, "{what:?} meet at {nearest}, not found"),
                     Some(collision) => {
                         prop_assert!(nearest < TOUCH + doubt, "{what:?} are {nearest} apart: {collision:?}");
                         let time = collision.time.unwrap();
-                        prop_assert!(time >= met - step, "{what:?} at {met}, not {time}");
+                        prop_assert!(time >= contact - step, "{what:?} at {contact}, not {time}");
                     }
                 }
             }

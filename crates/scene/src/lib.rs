@@ -26,8 +26,8 @@ pub use mount::{Mount, mounts_by_name};
 pub use obstacle::{Obstacle, Shape};
 pub use robot::{Body, Frame, Objects, Robot, Sensor, SensorKind, Wheel};
 pub use ros2::{Ros2, Ros2Value, Topics};
-pub use space::{Near, Sighting, Space, Thing, distance_between, triangulate};
-pub use trajectory::{Piece, Trajectory, TrajectoryError, Waypoint};
+pub use space::{Near, SceneObject, Sighting, Space, distance_between, triangulate};
+pub use trajectory::{Trajectory, TrajectoryError, TrajectorySegment, Waypoint};
 
 /// A world: robots on a floor with obstacles.
 #[derive(Debug, Clone, PartialEq)]
@@ -94,7 +94,7 @@ impl Scene {
     }
 
     /// Robots that touch something at their start: each with the first obstacle or earlier robot that it touches.
-    pub fn overlaps(&self) -> Vec<(usize, Thing)> {
+    pub fn overlaps(&self) -> Vec<(usize, SceneObject)> {
         let space = Space::of(self);
         let touches = |index: usize| {
             let robot = &self.robots[index];
@@ -103,7 +103,7 @@ impl Scene {
             let other = before.position(|other| {
                 distance_between((other.body, other.start), (robot.body, robot.start)) == 0.0
             });
-            near.map(|near| Thing::Obstacle(near.obstacle)).or(other.map(Thing::Robot))
+            near.map(|near| SceneObject::Obstacle(near.obstacle)).or(other.map(SceneObject::Robot))
         };
         (0..self.robots.len()).filter_map(|index| Some((index, touches(index)?))).collect()
     }

@@ -11,12 +11,12 @@ use crate::{Body, Mount, Obstacle, Scene, Shape, Trajectory};
 #[derive(Debug, Clone, Default)]
 pub struct Space {
     parts: Vec<ConvexPart>,
-    movers: Vec<Mover>,
+    movers: Vec<PartMotion>,
 }
 
 /// The trajectory of a part that moves.
 #[derive(Debug, Clone)]
-struct Mover {
+struct PartMotion {
     /// Its index among the parts.
     part: usize,
     /// The centre of the part, in the obstacle's frame.
@@ -65,12 +65,12 @@ pub struct Sighting {
     /// The normal of the surface there: a unit vector on the floor.
     pub normal: (f64, f64),
     /// The robot or obstacle that the point belongs to.
-    pub what: Thing,
+    pub object: SceneObject,
 }
 
-/// Something that can be seen or run into.
+/// A robot or an obstacle of a scene: what a sensor can see and a robot can collide with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Thing {
+pub enum SceneObject {
     /// The index in [`Scene::obstacles`].
     Obstacle(usize),
     /// The index in [`Scene::robots`].
@@ -105,7 +105,7 @@ impl Space {
             let heading = obstacle.pose.theta;
             let mover = |(part, found): (usize, &ConvexPart)| {
                 let centre = found.placement.inverse_transform_point(found.centre);
-                Mover { part, centre, heading, trajectory: trajectory.clone() }
+                PartMotion { part, centre, heading, trajectory: trajectory.clone() }
             };
             space.movers.extend(space.parts.iter().enumerate().skip(first).map(mover));
         }
@@ -143,20 +143,20 @@ impl Space {
     /// The nearest thing that a sensor of a robot at `pose` sees: an obstacle, or one of the `others`, which are robots by
     /// their index, with bodies and poses.
     pub fn sight(&self, pose: Pose, mount: &Mount, others: &[(usize, Body, Pose)]) -> Option<Sighting> {
-        let cone = SensorCone::new(pose.compose(&mount.pose), mount);
-        let obstacles = self.parts.iter().map(|part| (Thing::Obstacle(part.owner), *part));
+        let cone = FloorCone::new(pose.compose(&mount.pose), mount);
+        let obstacles = self.parts.iter().map(|part| (SceneObject::Obstacle(part.owner), *part));
         let robots = others
             .iter()
-            .map(|&(robot, body, pose)| (Thing::Robot(robot), ConvexPart::robot(robot, body, pose)));
+            .map(|&(robot, body, pose)| (SceneObject::Robot(robot), ConvexPart::robot(robot, body, pose)));
         let mut first: Option<Sighting> = None;
-        for (what, part) in obstacles.chain(robots) {
+        for (object, part) in obstacles.chain(robots) {
             let bound = first.map_or(mount.range, |sighting| sighting.distance);
             let seen = cone
                 .sees(&part, bound)
                 .filter(|(_, distance, _)| first.is_none_or(|first| *distance < first.distance));
             if let Some((point, distance, normal)) = seen {
                 let (point, normal) = ((point.x, point.y), (normal.x, normal.y));
-                first = Some(Sighting { distance, point, normal, what });
+                first = Some(Sighting { distance, point, normal, object });
             }
         }
         first
@@ -252,7 +252,7 @@ impl Solid {
 }
 
 /// The cone of a sensor, on the floor.
-struct SensorCone {
+struct FloorCone {
     at: Vector,
     heading: Vector,
     /// Cosine of half the cone's opening.
@@ -261,7 +261,7 @@ struct SensorCone {
     edges: [Vector; 2],
 }
 
-impl SensorCone {
+impl FloorCone {
     fn new(pose: Pose, mount: &Mount) -> Self {
         let direction = |angle: f64| Vector::new((pose.theta + angle).cos(), (pose.theta + angle).sin());
         let half = mount.cone / 2.0;
@@ -388,7 +388,10 @@ mod tests {
             let near = distance(&space);
             assert!(near.obstacle == 1 && close(near.distance, x - 0.3 - 0.2), "{time}: {near:?}");
             let seen = space.sight(Pose::default(), &looking(9.0, 20.0), &[]).unwrap();
-            assert!(seen.what == Thing::Obstacle(1) && close(seen.distance, x - 0.3 - 0.2), "{seen:?}");
+            assert!(
+                seen.object == SceneObject::Obstacle(1) && close(seen.distance, x - 0.3 - 0.2),
+                "{seen:?}"
+            );
         }
         assert_eq!(distance(&fixed).obstacle, 0);
         assert_eq!(distance(&Space::of_one(&scene, 1)), distance(&space), "it keeps its index");
@@ -424,7 +427,7 @@ mod tests {
         let space = space(vec![wall]);
         let seen = space.sight(Pose::default(), &looking(1.0, 20.0), &[]).unwrap();
         assert!(close(seen.distance, 0.75) && close(seen.point.0, 0.95) && close(seen.normal.0, -1.0));
-        assert_eq!(seen.what, Thing::Obstacle(0));
+        assert_eq!(seen.object, SceneObject::Obstacle(0));
         assert_eq!(space.sight(Pose::default(), &looking(0.7, 20.0), &[]), None);
         assert_eq!(space.sight(Pose::new(0.0, 0.0, PI), &looking(1.0, 20.0), &[]), None);
         // Turned by 30°, only the cone's right edge meets it, under 20°.
@@ -434,7 +437,7 @@ mod tests {
         assert!(close(seen.normal.0, -1.0) && close(seen.normal.1, 0.0), "{seen:?}");
         let robot = (3, BODY, Pose::new(0.7, 0.0, 0.0));
         let seen = space.sight(Pose::default(), &looking(1.0, 20.0), &[robot]).unwrap();
-        assert!(seen.what == Thing::Robot(3) && close(seen.distance, 0.3), "{seen:?}");
+        assert!(seen.object == SceneObject::Robot(3) && close(seen.distance, 0.3), "{seen:?}");
     }
 
     #[test]

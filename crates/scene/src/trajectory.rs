@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-/// The shortest piece of a trajectory, seconds: rounding of later times never makes one shorter.
-const SHORTEST_PIECE: f64 = 1e-9;
+/// The minimum duration of a segment, seconds: the rounding of late times never makes one shorter.
+const MIN_SEGMENT_DURATION: f64 = 1e-9;
 
 /// A way along straight lines, each at a constant speed: at the first point before its time, and at the last one after its
 /// time, or there and back between the two.
@@ -25,9 +25,9 @@ pub struct Waypoint {
     pub y: f64,
 }
 
-/// A part of a trajectory with a constant velocity.
+/// A segment of a trajectory, with a constant velocity.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Piece {
+pub struct TrajectorySegment {
     /// Metres per second.
     pub speed: f64,
     /// When it ends, seconds since the start of the simulation; infinite if it does not.
@@ -123,11 +123,11 @@ impl Trajectory {
         }
     }
 
-    /// The piece that begins or goes on at a time, seconds since the start of the simulation.
-    pub fn piece(&self, time: f64) -> Piece {
+    /// The segment at a time, the later one of two that meet there, seconds since the start of the simulation.
+    pub fn segment(&self, time: f64) -> TrajectorySegment {
         let (moment, is_back) = match self.phase(time) {
-            Phase::Before => return Piece { speed: 0.0, until: self.points[0].time },
-            Phase::After => return Piece { speed: 0.0, until: f64::INFINITY },
+            Phase::Before => return TrajectorySegment { speed: 0.0, until: self.points[0].time },
+            Phase::After => return TrajectorySegment { speed: 0.0, until: f64::INFINITY },
             Phase::There(moment) => (moment, false),
             Phase::Back(moment) => (moment, true),
         };
@@ -137,13 +137,13 @@ impl Trajectory {
         let (from, to) = (self.points[next - 1], self.points[next]);
         let rest = if is_back { moment - from.time } else { to.time - moment };
         let speed = (to.x - from.x).hypot(to.y - from.y) / (to.time - from.time);
-        Piece { speed, until: time + rest.max(SHORTEST_PIECE) }
+        TrajectorySegment { speed, until: time + rest.max(MIN_SEGMENT_DURATION) }
     }
 
     /// When its velocity may change, from 0 s on, in order; without an end if it repeats.
     pub fn changes(&self) -> impl Iterator<Item = f64> {
         std::iter::successors(Some(0.0), |time| {
-            Some(self.piece(*time).until).filter(|until| until.is_finite())
+            Some(self.segment(*time).until).filter(|until| until.is_finite())
         })
     }
 
@@ -226,18 +226,18 @@ mod tests {
         }
         let still = trajectory(&[[3.0, 1.0, 2.0]], true);
         assert_eq!((still.at(0.0), still.at(9.0)), ((1.0, 2.0), (1.0, 2.0)));
-        assert_eq!(still.piece(9.0), Piece { speed: 0.0, until: f64::INFINITY });
+        assert_eq!(still.segment(9.0), TrajectorySegment { speed: 0.0, until: f64::INFINITY });
     }
 
     #[test]
-    fn pieces_end_where_the_velocity_changes() {
-        let pieces = |trajectory: &Trajectory| -> Vec<(f64, f64)> {
-            trajectory.changes().take(9).map(|time| (time, trajectory.piece(time).speed)).collect()
+    fn segments_end_where_the_velocity_changes() {
+        let segments = |trajectory: &Trajectory| -> Vec<(f64, f64)> {
+            trajectory.changes().take(9).map(|time| (time, trajectory.segment(time).speed)).collect()
         };
         let once = [(0.0, 0.0), (2.0, 2.0), (4.0, 0.0), (5.0, 1.0), (6.0, 0.0)];
-        assert_eq!(pieces(&trajectory(&WAY, false)), once);
+        assert_eq!(segments(&trajectory(&WAY, false)), once);
         let back = [(6.0, 1.0), (7.0, 0.0), (8.0, 2.0), (10.0, 2.0), (12.0, 0.0)];
-        assert_eq!(pieces(&trajectory(&WAY, true)), [&once[..4], &back].concat());
+        assert_eq!(segments(&trajectory(&WAY, true)), [&once[..4], &back].concat());
     }
 
     #[test]
@@ -252,7 +252,7 @@ mod tests {
     proptest! {
         /// The search for collisions relies on this.
         #[test]
-        fn within_a_piece_it_is_as_fast_as_the_piece_says(
+        fn within_a_segment_it_has_the_speed_of_the_segment(
             first in 0.0..3.0, steps in prop::collection::vec((0.01..4.0, -3.0..3.0, -3.0..3.0), 1..5),
             repeats: bool, time in 0.0..100.0, part in 0.0..1.0,
         ) {
@@ -263,12 +263,12 @@ mod tests {
                 rows.push([time_of_point, x, y]);
             }
             let trajectory = trajectory(&rows, repeats);
-            let piece = trajectory.piece(time);
-            prop_assert!(piece.until > time);
-            let later = time + part * (piece.until.min(200.0) - time);
+            let segment = trajectory.segment(time);
+            prop_assert!(segment.until > time);
+            let later = time + part * (segment.until.min(200.0) - time);
             let (from, to) = (trajectory.at(time), trajectory.at(later));
             let way = (to.0 - from.0).hypot(to.1 - from.1);
-            prop_assert!((way - piece.speed * (later - time)).abs() < 1e-6, "{way} at {}", piece.speed);
+            prop_assert!((way - segment.speed * (later - time)).abs() < 1e-6, "{way} at {}", segment.speed);
         }
     }
 }

@@ -9,7 +9,7 @@ use toml_parser::parser::{Event, EventKind, RecursionGuard, parse_document};
 use crate::toml::span;
 
 /// The maximum depth of nested values; deeper ones are ignored.
-const DEEPEST: u32 = 16;
+const MAX_DEPTH: u32 = 16;
 
 /// A part of a name, in a key or in the header of a table.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -134,7 +134,7 @@ impl Section<'_> {
     fn events(self) -> Vec<Event> {
         let tokens = Source::new(self.text).lex().into_vec();
         let mut events = Vec::new();
-        parse_document(&tokens, &mut RecursionGuard::new(&mut events, DEEPEST), &mut ());
+        parse_document(&tokens, &mut RecursionGuard::new(&mut events, MAX_DEPTH), &mut ());
         events
     }
 

@@ -3,7 +3,7 @@
 use pydslrep_text::closest;
 
 /// Shorter words are part of too many others.
-const SHORTEST: usize = 3;
+const MIN_PART_LENGTH: usize = 3;
 
 /// The known words that an unknown one may stand for: the one that is spelled nearly the same, else those that share most
 /// of its parts, or the beginnings of them.
@@ -14,7 +14,7 @@ pub fn suggestions<'a>(word: &str, known: &[&'a str]) -> Vec<&'a str> {
         return vec![near];
     }
     let word = word.to_lowercase();
-    let parts = || word.split(|c: char| !c.is_alphanumeric()).filter(|part| part.len() >= SHORTEST);
+    let parts = || word.split(|c: char| !c.is_alphanumeric()).filter(|part| part.len() >= MIN_PART_LENGTH);
     let shared =
         |known: &str| parts().filter(|part| known.split('-').any(|other| other.starts_with(part))).count();
     let most = known.iter().map(|known| shared(known)).max().unwrap_or(0);

@@ -6,8 +6,8 @@ use toml::de::{DeFloat, DeInteger, DeTable, DeValue, Error};
 
 use crate::{Problem, ProblemKind};
 
-/// No key is nested deeper; what is, is ignored.
-const DEEPEST: usize = 8;
+/// The maximum depth of nested keys; deeper ones are ignored.
+const MAX_DEPTH: usize = 8;
 
 /// A value and where it is.
 #[derive(Debug, Clone, PartialEq)]
@@ -109,7 +109,7 @@ fn toml_value(value: &DeValue<'_>, depth: usize) -> Value {
         DeValue::Float(number) => Value::Number(float(number)),
         DeValue::Boolean(flag) => Value::Flag(*flag),
         DeValue::Datetime(_) => Value::Date,
-        DeValue::Array(array) if depth < DEEPEST => {
+        DeValue::Array(array) if depth < MAX_DEPTH => {
             let node = |value: &Spanned<DeValue<'_>>| Node {
                 value: toml_value(value.get_ref(), depth + 1),
                 span: Some(span(value.span())),
@@ -117,7 +117,7 @@ fn toml_value(value: &DeValue<'_>, depth: usize) -> Value {
             Value::List(array.iter().map(node).collect())
         }
         DeValue::Array(_) => Value::List(Vec::new()),
-        DeValue::Table(table) if depth < DEEPEST => Value::Table(toml_entries(table, depth)),
+        DeValue::Table(table) if depth < MAX_DEPTH => Value::Table(toml_entries(table, depth)),
         DeValue::Table(_) => Value::Table(Vec::new()),
     }
 }
@@ -153,12 +153,12 @@ fn json_value(value: &serde_json::Value, depth: usize) -> Value {
         Json::Bool(flag) => Value::Flag(*flag),
         Json::Number(number) => Value::Number(number.as_f64().unwrap_or(f64::NAN)),
         Json::String(text) => Value::Text(text.clone()),
-        Json::Array(_) if depth >= DEEPEST => Value::List(Vec::new()),
+        Json::Array(_) if depth >= MAX_DEPTH => Value::List(Vec::new()),
         Json::Array(array) => {
             let node = |value: &Json| Node { value: json_value(value, depth + 1), span: None };
             Value::List(array.iter().map(node).collect())
         }
-        Json::Object(_) if depth >= DEEPEST => Value::Table(Vec::new()),
+        Json::Object(_) if depth >= MAX_DEPTH => Value::Table(Vec::new()),
         Json::Object(object) => {
             let entry = |(key, value): (&String, &Json)| Entry {
                 key: key.clone(),

@@ -9,7 +9,7 @@ use common::{
     area_1, environment, four_robots, move_at, move_by, movement, robot, sensors, slam, turn, turn_until,
     with_sensors,
 };
-use pydslrep_analysis::environment::{Action, Environment, SensorKind, Source};
+use pydslrep_analysis::environment::{Environment, ResolvedAction, SensorKind, Source};
 use pydslrep_kinematics::Drive;
 use pydslrep_script::{Target, file_name, generate};
 
@@ -35,7 +35,7 @@ fn variants() -> Vec<Environment> {
     let mut variants = vec![
         named("two_wheel", area_1(Drive::TwoWheel)),
         named("four_wheel", area_1(Drive::FourWheel)),
-        named("four_mecanum", area_1(Drive::FourMecanum)),
+        named("mecanum", area_1(Drive::Mecanum)),
         sensors(),
         slam(),
         slam_and_more(),
@@ -89,8 +89,8 @@ fn slam_and_more() -> Environment {
 /// Actions from another file with special characters in its name.
 fn imported() -> Environment {
     let source = |line| Source { file: Some("größe/机器人.pyr".to_owned()), line };
-    let actions: Vec<Action> = (1..60)
-        .map(|length| Action { text: "x".repeat(length), source: source(1), ..move_by(1.0, 1) })
+    let actions: Vec<ResolvedAction> = (1..60)
+        .map(|length| ResolvedAction { text: "x".repeat(length), source: source(1), ..move_by(1.0, 1) })
         .collect();
     environment(
         "imported",
@@ -104,7 +104,7 @@ fn imported() -> Environment {
 fn many(count: usize) -> Environment {
     let names: Vec<String> = (1..=count).map(|number| format!("s{number}")).collect();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let drives = [Drive::TwoWheel, Drive::FourWheel, Drive::FourMecanum].into_iter().cycle();
+    let drives = [Drive::TwoWheel, Drive::FourWheel, Drive::Mecanum].into_iter().cycle();
     let robots = drives.zip(1..=count).map(|(drive, number)| {
         let mut robot = with_sensors(robot(&format!("r{number}"), drive, 23000), &names);
         robot.sensors.iter_mut().step_by(2).for_each(|sensor| sensor.kind = SensorKind::Bumper);
@@ -124,7 +124,7 @@ fn names_of(length: usize) -> Environment {
     let (long, other) = (name("a"), name("b"));
     let mut robots = vec![
         with_sensors(robot(&long, Drive::TwoWheel, 19997), &[&long, &other]),
-        robot(&other, Drive::FourMecanum, 19998),
+        robot(&other, Drive::Mecanum, 19998),
     ];
     for robot in &mut robots {
         for (wheel, last) in robot.wheels.iter_mut().zip(["a", "b", "c", "d"]) {

@@ -6,7 +6,7 @@ use std::net::Ipv4Addr;
 
 use pydslrep_analysis::Target;
 use pydslrep_analysis::environment::{
-    ActionKind, Environment, Movement, Robot, Ros2Value, Sensor, SensorKind, nested,
+    Environment, Movement, ResolvedActionKind, Robot, Ros2Value, Sensor, SensorKind, nested,
 };
 
 use crate::identifiers::{CLEAR, DETECTS, Identifiers, conditions, imports};
@@ -162,8 +162,9 @@ fn mounts(robot: &Robot, used: &BTreeSet<usize>, is_explorer: bool) -> Option<Ex
 
 /// The indices of the robots that explore.
 fn explorers(environment: &Environment) -> BTreeSet<usize> {
-    let explores =
-        |movement: &&Movement| nested(&movement.actions).iter().any(|action| action.kind == ActionKind::Slam);
+    let explores = |movement: &&Movement| {
+        nested(&movement.actions).iter().any(|action| action.kind == ResolvedActionKind::Slam)
+    };
     environment.movements.iter().filter(explores).map(|movement| movement.robot).collect()
 }
 
@@ -175,19 +176,19 @@ pub fn used_sensors(environment: &Environment) -> Vec<BTreeSet<usize>> {
         for action in nested(&movement.actions) {
             used.extend(action.conditions().into_iter().flat_map(|condition| &condition.sensors));
             match &action.kind {
-                ActionKind::TurnUntil { sensors, .. } => used.extend(sensors),
-                ActionKind::Slam => {
+                ResolvedActionKind::TurnUntil { sensors, .. } => used.extend(sensors),
+                ResolvedActionKind::Slam => {
                     let sensors = environment.robots[movement.robot].sensors.iter().enumerate();
                     let distances = sensors.filter(|(_, sensor)| sensor.kind == SensorKind::Distance);
                     used.extend(distances.map(|(index, _)| index));
                 }
-                ActionKind::Move { .. }
-                | ActionKind::Turn { .. }
-                | ActionKind::Wait { .. }
-                | ActionKind::Repeat { .. }
-                | ActionKind::RepeatUntil { .. }
-                | ActionKind::If { .. }
-                | ActionKind::Do { .. } => {}
+                ResolvedActionKind::Move { .. }
+                | ResolvedActionKind::Turn { .. }
+                | ResolvedActionKind::Wait { .. }
+                | ResolvedActionKind::Repeat { .. }
+                | ResolvedActionKind::RepeatUntil { .. }
+                | ResolvedActionKind::If { .. }
+                | ResolvedActionKind::Do { .. } => {}
             }
         }
     }

@@ -1,7 +1,7 @@
 //! The body of a coroutine: one line for each line of a movement.
 
 use pydslrep_analysis::environment::{
-    Action, ActionKind, Branch, Condition, Environment, Movement, Robot, Source,
+    Branch, Condition, Environment, Movement, ResolvedAction, ResolvedActionKind, Robot, Source,
 };
 use pydslrep_kinematics::motion::RIM_SPEED;
 
@@ -31,23 +31,23 @@ impl<'a> Statements<'a> {
     }
 
     /// The lines of some actions, so far to the right.
-    pub(crate) fn of(&self, actions: &[Action], indent: usize) -> Vec<String> {
+    pub(crate) fn of(&self, actions: &[ResolvedAction], indent: usize) -> Vec<String> {
         actions.iter().map(|action| self.statement(action, indent)).collect()
     }
 
-    fn statement(&self, action: &Action, indent: usize) -> String {
+    fn statement(&self, action: &ResolvedAction, indent: usize) -> String {
         let comment = comment(&action.source, &action.text);
         match &action.kind {
-            ActionKind::Repeat { count, body } => {
+            ResolvedActionKind::Repeat { count, body } => {
                 let head = self.clause(Words::For, "repeat", vec![Atom(count.to_string())]);
                 self.block(&head, &comment, body, indent)
             }
-            ActionKind::RepeatUntil { until, body } => {
+            ResolvedActionKind::RepeatUntil { until, body } => {
                 let head = self.clause(Words::AsyncFor, "repeat_until", vec![self.condition("", until)]);
                 self.block(&head, &comment, body, indent)
             }
-            ActionKind::If { branches, otherwise } => self.choice(branches, otherwise, indent),
-            ActionKind::Do { movement } => {
+            ResolvedActionKind::If { branches, otherwise } => self.choice(branches, otherwise, indent),
+            ResolvedActionKind::Do { movement } => {
                 commented(indent, &Atom(format!("await {}()", self.movements[*movement])), "", &comment)
             }
             kind => {
@@ -57,7 +57,7 @@ impl<'a> Statements<'a> {
         }
     }
 
-    fn choice(&self, branches: &[Branch], otherwise: &[Action], indent: usize) -> String {
+    fn choice(&self, branches: &[Branch], otherwise: &[ResolvedAction], indent: usize) -> String {
         let mut lines = Vec::with_capacity(branches.len() + 1);
         for (index, branch) in branches.iter().enumerate() {
             let (words, before) = if index == 0 { (Words::If, "") } else { (Words::Elif, "else ") };
@@ -72,7 +72,7 @@ impl<'a> Statements<'a> {
         lines.join("\n")
     }
 
-    fn block(&self, head: &Expression, comment: &str, body: &[Action], indent: usize) -> String {
+    fn block(&self, head: &Expression, comment: &str, body: &[ResolvedAction], indent: usize) -> String {
         let mut lines = vec![commented(indent, head, ":", comment)];
         lines.extend(self.of(body, indent + STEP));
         if body.is_empty() {
@@ -88,14 +88,14 @@ impl<'a> Statements<'a> {
     }
 
     /// The method of the robot that does an action without blocks, with its arguments.
-    fn method(&self, kind: &ActionKind) -> (&'static str, Vec<Expression>) {
+    fn method(&self, kind: &ResolvedActionKind) -> (&'static str, Vec<Expression>) {
         match kind {
-            ActionKind::Move { distance, speed, until } => {
+            ResolvedActionKind::Move { distance, speed, until } => {
                 let distance = distance.map(|distance| Atom(float(distance)));
                 let arguments = distance.into_iter().chain(speed_argument(*speed));
                 ("move", arguments.chain(self.until(until.as_ref())).collect())
             }
-            ActionKind::Turn { left, degrees, circle, speed, until } => {
+            ResolvedActionKind::Turn { left, degrees, circle, speed, until } => {
                 let angle = match degrees {
                     Some(degrees) => float(if *left { *degrees } else { -degrees }),
                     None => side(*left),
@@ -108,20 +108,20 @@ impl<'a> Statements<'a> {
                 arguments.extend(self.until(until.as_ref()));
                 (if circle.is_some() { "arc" } else { "turn" }, arguments)
             }
-            ActionKind::TurnUntil { left, sensors } => {
+            ResolvedActionKind::TurnUntil { left, sensors } => {
                 let sensors = sensors.iter().map(|&sensor| Atom(literal(&self.robot.sensors[sensor].name)));
                 ("turn_until_free", std::iter::once(Atom(side(*left))).chain(sensors).collect())
             }
-            ActionKind::Wait { seconds, until } => {
+            ResolvedActionKind::Wait { seconds, until } => {
                 let seconds = seconds.map(|seconds| Atom(float(seconds)));
                 ("wait", seconds.into_iter().chain(self.until(until.as_ref())).collect())
             }
-            ActionKind::Slam => ("slam", Vec::new()),
+            ResolvedActionKind::Slam => ("slam", Vec::new()),
             // They are written as statements of their own.
-            ActionKind::Repeat { .. }
-            | ActionKind::RepeatUntil { .. }
-            | ActionKind::If { .. }
-            | ActionKind::Do { .. } => ("", Vec::new()),
+            ResolvedActionKind::Repeat { .. }
+            | ResolvedActionKind::RepeatUntil { .. }
+            | ResolvedActionKind::If { .. }
+            | ResolvedActionKind::Do { .. } => ("", Vec::new()),
         }
     }
 

@@ -38,7 +38,7 @@ fn plan_and_generate(text: &str) {
         let plan = pydslrep_analysis::plan(&environment, &scene);
         assert!(plan.is_ok(), "robots of default size can be planned");
         for target in Target::ALL {
-            // Some have no script, such as those whose names are too long; a panic is what is sought.
+            // Some have no script, such as those whose names are too long; the test looks for panics only.
             let _ = pydslrep_script::generate(&environment, target, "random.pyr");
         }
     }

@@ -14,7 +14,7 @@ use common::{
 };
 use expect_test::{Expect, expect, expect_file};
 use pydslrep_analysis::Database;
-use pydslrep_analysis::environment::{Action, Environment, Sensor, SensorKind, Source};
+use pydslrep_analysis::environment::{Environment, ResolvedAction, Sensor, SensorKind, Source};
 use pydslrep_kinematics::Drive;
 use pydslrep_script::{
     Origin, REQUIREMENTS, REQUIREMENTS_MUJOCO, REQUIREMENTS_SLAM, Target, file_name, generate, origin,
@@ -100,7 +100,7 @@ fn only_what_is_used_is_imported() {
     assert_eq!(imports(&environment("nothing", vec![], vec![], vec![])), "");
     assert_eq!(imports(&area_1(Drive::TwoWheel)), "TwoWheelRobot movement");
     assert_eq!(imports(&area_1(Drive::FourWheel)), "FourWheelRobot movement");
-    assert_eq!(imports(&area_1(Drive::FourMecanum)), "MecanumRobot movement");
+    assert_eq!(imports(&area_1(Drive::Mecanum)), "MecanumRobot movement");
     assert_eq!(imports(&four_robots()), "FourWheelRobot MecanumRobot TwoWheelRobot movement parallel");
 }
 
@@ -465,7 +465,7 @@ fn nothing_breaks_out_of_its_place() {
     let mut robot = with_sensors(robot(evil, Drive::TwoWheel, 1), &[evil]);
     evil.clone_into(&mut robot.wheels[0].name);
     let source = Source { file: Some(evil.to_owned()), line: 3 };
-    let action = Action { text: evil.to_owned(), source, ..move_by(1.0, 1) };
+    let action = ResolvedAction { text: evil.to_owned(), source, ..move_by(1.0, 1) };
     let movements = vec![movement(evil, 0, vec![action, turn_until(&[0], evil, 1)])];
     let environment = environment(evil, vec![robot], movements, vec![vec![0]]);
     let script = page(&environment, Target::CoppeliaSim, evil);

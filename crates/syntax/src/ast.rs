@@ -155,12 +155,12 @@ pub struct Sensor {
     /// Its name.
     pub name: Option<Name>,
     /// The kind after `:`.
-    pub kind: Option<(SensorKind, Span)>,
+    pub kind: Option<(SensorKeyword, Span)>,
 }
 
-/// Kinds of proximity sensor.
+/// The keyword for a kind of proximity sensor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SensorKind {
+pub enum SensorKeyword {
     /// `distance`, also where no kind is written.
     Distance,
     /// `bumper`

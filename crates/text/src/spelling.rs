@@ -1,36 +1,36 @@
-//! When one word is close enough to another to be meant.
+//! Decides whether one word is so close to another that it is probably a misspelling of it.
 
-/// Returns whether `written` is plausibly a slip for `meant`: equal except for case, or an edit distance of up to a
-/// third of the length. Words of one or two letters count as slips only by case or by two letters changing places.
-pub fn is_similar(written: &str, meant: &str) -> bool {
-    slip(written, meant).is_some()
+/// Returns whether `written` is plausibly a misspelling of `intended`: equal except for case, or an edit distance of up to a
+/// third of the length. Words of one or two letters count as misspellings only by case or by two letters changing places.
+pub fn is_similar(written: &str, intended: &str) -> bool {
+    slip(written, intended).is_some()
 }
 
 /// The distance between two words: first whether they differ in more than case, then the number of edits.
 type Distance = (bool, usize);
 
-/// Returns the distance between the two, if one may be a slip for the other: the less, the nearer.
-fn slip(written: &str, meant: &str) -> Option<Distance> {
-    slip_within(written, meant, (true, usize::MAX))
+/// Returns the distance between the two, if one may be a misspelling of the other; smaller is closer.
+fn slip(written: &str, intended: &str) -> Option<Distance> {
+    slip_within(written, intended, (true, usize::MAX))
 }
 
 /// As [`slip`], if they are not farther apart than `bound`. Lengths and ends alone rule nearly all of many names out.
-fn slip_within(written: &str, meant: &str, bound: Distance) -> Option<Distance> {
-    let (one, other) = differing(written, meant);
+fn slip_within(written: &str, intended: &str, bound: Distance) -> Option<Distance> {
+    let (one, other) = differing(written, intended);
     if one.is_empty() && other.is_empty() {
         return None;
     }
     let only_case = one.eq_ignore_ascii_case(other);
     // In bytes there are not fewer than in characters, so this turns away too few rather than too many.
-    let most = (written.len().max(meant.len()) / 3).max(1);
-    if !only_case && (!bound.0 || at_least(one, other) > most.min(bound.1)) {
+    let max_edits = (written.len().max(intended.len()) / 3).max(1);
+    if !only_case && (!bound.0 || at_least(one, other) > max_edits.min(bound.1)) {
         return None;
     }
-    let longest = written.chars().count().max(meant.chars().count());
-    let most = (longest / 3).max(usize::from(is_swap(written, meant)));
+    let longest = written.chars().count().max(intended.chars().count());
+    let max_edits = (longest / 3).max(usize::from(is_swap(written, intended)));
     let distance = strsim::osa_distance(one, other);
     let found = (!only_case, distance);
-    ((only_case || distance <= most) && found <= bound).then_some(found)
+    ((only_case || distance <= max_edits) && found <= bound).then_some(found)
 }
 
 /// A number of edits that it takes at least to make one of the other, which differs from it at both ends.
@@ -60,8 +60,8 @@ fn differing<'a>(one: &'a str, other: &'a str) -> (&'a str, &'a str) {
     (&one[..one.len() - tail], &other[..other.len() - tail])
 }
 
-fn is_swap(written: &str, meant: &str) -> bool {
-    written.len() == 2 && meant.len() == 2 && written.bytes().eq(meant.bytes().rev())
+fn is_swap(written: &str, intended: &str) -> bool {
+    written.len() == 2 && intended.len() == 2 && written.bytes().eq(intended.bytes().rev())
 }
 
 /// The candidate nearest to `written`, if one is close enough; the first of equals.
@@ -116,8 +116,8 @@ mod tests {
         fn what_words_have_in_common_does_not_matter(one in "[abA_é]{0,7}", other in "[abA_é]{0,7}") {
             let longest = one.chars().count().max(other.chars().count());
             let distance = strsim::osa_distance(&one, &other);
-            let most = (longest / 3).max(usize::from(is_swap(&one, &other)));
-            let similar = one != other && (one.eq_ignore_ascii_case(&other) || distance <= most);
+            let max_edits = (longest / 3).max(usize::from(is_swap(&one, &other)));
+            let similar = one != other && (one.eq_ignore_ascii_case(&other) || distance <= max_edits);
             proptest::prop_assert_eq!(is_similar(&one, &other), similar);
         }
 

@@ -19,7 +19,7 @@ impl Workspace {
         let Some(document) = self.documents.get(key) else { return };
         let imports = document.file.map_or(&[][..], |file| self.database.imports(file));
         if imports != document.imports {
-            self.together(|this| {
+            self.batch(|this| {
                 this.follow_imports(key);
                 this.forget_unneeded();
             });

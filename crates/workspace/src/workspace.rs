@@ -116,7 +116,7 @@ impl Workspace {
 
     /// Opens documents that belong together: none is read from a file because another imports it.
     pub fn open_all(&mut self, documents: impl IntoIterator<Item = (String, Rope)>) {
-        self.together(|this| {
+        self.batch(|this| {
             let mut keys = Vec::new();
             for (key, text) in documents {
                 this.insert(&key, text, true);
@@ -134,14 +134,14 @@ impl Workspace {
         self.follow_scenes();
     }
 
-    /// Changes documents of which one may lead to the next: their problems are looked for once, at the end.
-    pub(crate) fn together<R>(&mut self, change: impl FnOnce(&mut Self) -> R) -> R {
-        if self.database.is_together() {
+    /// Makes changes that belong together: problems are looked for once, after all of them.
+    pub(crate) fn batch<R>(&mut self, change: impl FnOnce(&mut Self) -> R) -> R {
+        if self.database.is_in_batch() {
             return change(self);
         }
-        self.database.begin_together();
+        self.database.begin_batch();
         let result = change(self);
-        self.database.end_together();
+        self.database.end_batch();
         result
     }
 
@@ -192,7 +192,7 @@ impl Workspace {
     /// Adds a file that was found on the disk, unless it is there already.
     pub fn add(&mut self, key: &str, text: &str) {
         if !self.documents.contains_key(key) {
-            self.together(|this| {
+            self.batch(|this| {
                 this.insert_file(key, text);
                 this.follow_imports(key);
             });
@@ -209,7 +209,7 @@ impl Workspace {
             DocumentKind::Scene => return self.scene_file_changed(key),
             DocumentKind::Program => {}
         }
-        self.together(|this| {
+        self.batch(|this| {
             if !is_open {
                 this.remove(key);
                 if this.is_listed(key)
@@ -294,7 +294,7 @@ impl Workspace {
             left_out.insert(failed);
         }
         self.reload_settings();
-        self.together(|this| {
+        self.batch(|this| {
             for key in this.programs() {
                 this.follow_imports(&key);
             }

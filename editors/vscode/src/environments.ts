@@ -8,7 +8,7 @@ import { showInformation, showWarning } from "./notifications";
 import { PLANNED_AT, type EnvironmentId, type PlannedAt } from "../../preview/host/protocol";
 
 /** So many programs are offered. */
-const MOST_PROGRAMS = 1000;
+const MAX_PROGRAMS = 1000;
 
 export const OPEN_A_PROGRAM = "Open a program (a .pyr file) first.";
 
@@ -125,7 +125,7 @@ export async function chooseProgram(uri: vscode.Uri | undefined): Promise<vscode
 }
 
 async function pickProgram(): Promise<vscode.TextDocument | undefined> {
-  const found = await vscode.workspace.findFiles("**/*.pyr", undefined, MOST_PROGRAMS);
+  const found = await vscode.workspace.findFiles("**/*.pyr", undefined, MAX_PROGRAMS);
   if (found.length === 0) {
     showInformation(OPEN_A_PROGRAM);
     return undefined;

@@ -7,10 +7,10 @@ const PATTERN = "**/{*.pyr,*.scene.toml,pydslrep.toml,*.py}";
 const IS_WANTED = /\.pyr$|\.scene\.toml$|\/pydslrep\.toml$|\.py$/;
 
 /** So many files and folders are visited; what is beyond is only found by a search. */
-const MOST_ENTRIES = 2_000;
+const MAX_ENTRIES = 2_000;
 
 /** Files that are larger are no programs, bytes. */
-const MOST_BYTES = 1 << 20;
+const MAX_BYTES = 1 << 20;
 
 export class ProvidedFiles implements vscode.Disposable {
   private readonly subscriptions: vscode.Disposable[] = [];
@@ -44,7 +44,7 @@ export class ProvidedFiles implements vscode.Disposable {
     for (const { uri } of folders) {
       // A file system that cannot search never answers.
       void vscode.workspace.findFiles(new vscode.RelativePattern(uri, PATTERN)).then(provideNew);
-      await provideNew(await visit(uri, MOST_ENTRIES));
+      await provideNew(await visit(uri, MAX_ENTRIES));
     }
   }
 
@@ -74,7 +74,7 @@ export class ProvidedFiles implements vscode.Disposable {
 async function read(uri: vscode.Uri): Promise<string | null> {
   try {
     const bytes = await vscode.workspace.fs.readFile(uri);
-    return bytes.length > MOST_BYTES ? null : new TextDecoder("utf-8", { fatal: true }).decode(bytes);
+    return bytes.length > MAX_BYTES ? null : new TextDecoder("utf-8", { fatal: true }).decode(bytes);
   } catch {
     return null;
   }

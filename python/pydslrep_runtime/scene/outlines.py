@@ -13,7 +13,7 @@ Edge = tuple[Point, Point]
 
 FINENESS = 0.002  # m by which an outline may be off
 MERGED = 1e-5  # m within which corners are one
-MOST_TRIANGLES = 200  # that an outline with holes is cut into
+MAX_TRIANGLES = 200  # of an outline with holes
 
 
 def outlines(
@@ -29,7 +29,7 @@ def outlines(
     if all(area(loop) > 0.0 for loop in loops):
         return [simplified(loop) for loop in loops]
     # Polygons have no holes.
-    return seen if len(seen) <= MOST_TRIANGLES else None
+    return seen if len(seen) <= MAX_TRIANGLES else None
 
 
 def hull(vertices: Iterable[Sequence[float]]) -> Polygon:

@@ -17,7 +17,7 @@ from .reader import SceneReader
 from .robot_parts import build_robot
 
 BUILT_ALREADY = "built-already"  # the reason of a refusal without `replace`
-MOST_LISTED = 10  # objects in a message
+MAX_LISTED = 10  # objects in a message
 
 
 def push(
@@ -125,9 +125,9 @@ def _check_free(
         if alias in wanted:
             found.append(f"/{alias}")
     if found:
-        listed = ", ".join(found[:MOST_LISTED])
-        if len(found) > MOST_LISTED:
-            listed += f" and {len(found) - MOST_LISTED} more"
+        listed = ", ".join(found[:MAX_LISTED])
+        if len(found) > MAX_LISTED:
+            listed += f" and {len(found) - MAX_LISTED} more"
         raise RefusalError(
             f"the scene has objects of the same names already: {listed}",
             "rename or remove them: `scene push` never changes what it has not made",

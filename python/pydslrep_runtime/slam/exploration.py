@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from .. import events
 from .explorer import UnboundedAreaError
-from .rover import SlamRover
+from .robot import SlamRobot
 from .session import SlamSession
 from .topological_map import TopologicalMap
 
@@ -21,7 +21,7 @@ async def explore(robot: "Motion", session: SlamSession) -> None:
     if the map cannot be written.
     """
     session.check_outputs()
-    explorer = make_rover(robot, session).explorer()
+    explorer = make_slam_robot(robot, session).explorer()
     explorer.on_node = lambda: _report(robot, explorer.map)
     try:
         await explorer.explore()
@@ -63,12 +63,12 @@ def warn_of_uncertain_nodes(robot: str, found: TopologicalMap) -> None:
         )
 
 
-def make_rover(robot: "Motion", session: SlamSession) -> SlamRover:
+def make_slam_robot(robot: "Motion", session: SlamSession) -> SlamRobot:
     """A robot as the explorer uses it."""
     if not session.uses_odometry:
-        return SlamRover(robot, session)
+        return SlamRobot(robot, session)
     # By name and only here: neither a script nor a type checker that reads it needs numpy and
     # scipy for anything else.
-    odometry = importlib.import_module(".odometry.rover", __package__)
-    rover: SlamRover = odometry.OdometryRover(robot, session)
-    return rover
+    odometry = importlib.import_module(".odometry.robot", __package__)
+    slam_robot: SlamRobot = odometry.OdometrySlamRobot(robot, session)
+    return slam_robot

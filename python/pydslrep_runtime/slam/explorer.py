@@ -18,7 +18,7 @@ CLOSE = 0.15
 FAR_STEPS = 2.0
 
 
-class Rover(Protocol):
+class ExplorerRobot(Protocol):
     """The robot as the explorer uses it; updates the occupancy grid as it moves."""
 
     def pose(self) -> Pose:
@@ -72,7 +72,7 @@ class Explorer:
 
     def __init__(
         self,
-        rover: Rover,
+        robot: ExplorerRobot,
         grid: OccupancyGrid,
         step: float,
         blind_angle: float,
@@ -86,14 +86,14 @@ class Explorer:
         """
         self.map = TopologicalMap()
         self.on_node: Callable[[], object] = lambda: None  # when the map has grown
-        self._rover, self._grid = rover, grid
+        self._robot, self._grid = robot, grid
         self._step, self._blind_angle, self._extent = step, blind_angle, extent
         # In metres: a robot that localises by walls explores open space last.
         self._open_space_cost = 4.0 * step if prefers_walls else 0.0
         self._spacing = 0.8 * step  # a position nearer to a node belongs to that node
         self._max_unlocalised = 1.5 * step  # to drive without localising
         self._min_loop = 4.0 * step  # a shortcut must save a path of this length
-        self._keyframes: list[int] = []  # the rover's keyframe of each node
+        self._keyframes: list[int] = []  # the robot's keyframe of each node
         # A robot that localises by walls may miss a door, and try it again in the end.
         self._max_attempts = 3 if prefers_walls else 1
         self._blocks: Counter[tuple[int, int]] = Counter()  # by node and bearing index
@@ -120,7 +120,7 @@ class Explorer:
     def _nearest_target(self) -> Target | None:
         """The unexplored frontier with the shortest path, preferably straight ahead."""
         distances = self.map.distances(self._here)
-        heading = self._rover.pose().theta
+        heading = self._robot.pose().theta
         best, least = None, math.inf
         for number, distance in distances.items():
             if distance >= least:
@@ -241,8 +241,8 @@ class Explorer:
         unlocalised = 0.0
         for next_node in self.map.path(self._here, node):
             unlocalised += self._here.neighbours[next_node.number]
-            if not await self._rover.drive_to(next_node.position, lambda: False):
-                await self._rover.back_up_to(self._here.position)
+            if not await self._robot.drive_to(next_node.position, lambda: False):
+                await self._robot.back_up_to(self._here.position)
                 self.map.block(self._here, next_node)
                 await self._localise()
                 return False
@@ -264,11 +264,11 @@ class Explorer:
             if target.known_node is None
             else lambda: False
         )
-        if not await self._rover.drive_to(target.goal, should_stop):
+        if not await self._robot.drive_to(target.goal, should_stop):
             # An obstacle has appeared: this is no longer a frontier.
-            contact = self._rover.pose().ahead(self._grid.radius)
+            contact = self._robot.pose().ahead(self._grid.radius)
             self._bumps.append((contact.x, contact.y))
-            await self._rover.back_up_to(node.position)
+            await self._robot.back_up_to(node.position)
             self._discard(target)
             return
         if target.known_node:
@@ -295,7 +295,7 @@ class Explorer:
 
     def _is_at(self, node: Node) -> bool:
         """Whether the robot is at a node, as it should be."""
-        here = self._rover.pose()
+        here = self._robot.pose()
         return math.dist((here.x, here.y), node.position) < self._step
 
     def _is_step(self, a: Node, b: Node) -> bool:
@@ -304,7 +304,7 @@ class Explorer:
 
     def _nearest_node(self, besides: Node | None = None) -> Node:
         """The nearest node that the robot can drive to, or else the nearest."""
-        pose = self._rover.pose()
+        pose = self._robot.pose()
         here = pose.x, pose.y
         near = [n for n in self.map.nodes_near(here, math.inf) if n is not besides]
         return next(
@@ -323,7 +323,7 @@ class Explorer:
         before = are_open(Pose(target.node.x, target.node.y, target.frontier.bearing))
 
         def should_stop() -> bool:
-            here = self._rover.pose()
+            here = self._robot.pose()
             if math.dist((here.x, here.y), target.node.position) < 0.5 * self._step:
                 return False
             return any(
@@ -335,9 +335,9 @@ class Explorer:
     async def _add_node(self) -> Node:
         """Adds a node here and updates the frontiers of all nodes nearby."""
         number = await self._localise()
-        here = Pose(*self._rover.position(number), 0.0)
+        here = Pose(*self._robot.position(number), 0.0)
         node = self.map.add(here.x, here.y)
-        node.is_uncertain = number in self._rover.uncertain()
+        node.is_uncertain = number in self._robot.uncertain()
         self._keyframes.append(number)
         self._grid.mark_footprint(here.x, here.y)
         self._check_bounds(node)
@@ -362,11 +362,11 @@ class Explorer:
 
     async def _localise(self) -> int:
         """Localises the robot and corrects the nodes' positions."""
-        number = await self._rover.localise()
+        number = await self._robot.localise()
         for node, keyframe in zip(self.map.nodes, self._keyframes, strict=True):
-            if (position := self._rover.position(keyframe)) != node.position:
+            if (position := self._robot.position(keyframe)) != node.position:
                 self.map.move(node, position)
-            node.is_uncertain = keyframe in self._rover.uncertain()
+            node.is_uncertain = keyframe in self._robot.uncertain()
         return number
 
     async def _look_around(self, node: Node) -> None:
@@ -376,11 +376,11 @@ class Explorer:
             missing := self._unexplored_bearings(node)
         ):
             if turned == 0.0:
-                heading = self._rover.pose().theta
+                heading = self._robot.pose().theta
                 left = sum(wrap_angle(bearing - heading) > 0.0 for bearing in missing)
                 side = 1.0 if 2 * left >= len(missing) else -1.0
             angle = min(self._blind_angle - turned, math.pi / 6.0)
-            await self._rover.turn_by(side * angle)
+            await self._robot.turn_by(side * angle)
             turned += angle
         self._grid.mark_footprint(node.x, node.y)
 

@@ -34,7 +34,7 @@ def answer(terminal: Terminal, text: str) -> None:
     for _ in range(5):
         terminal.press("C-a", "C-k")
         terminal.type(text)
-        if terminal.wait(rf" {re.escape(text)}\s*$", patience=3):
+        if terminal.wait(rf" {re.escape(text)}\s*$", timeout=3):
             break
     terminal.press("Enter")
 

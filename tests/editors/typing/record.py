@@ -25,7 +25,7 @@ PACES = (30, 70, 150)
 # Without `--all`, a few programs are typed at the first pace, and the first one also at the second.
 FEW_PACES = (70, 30)
 # How long saving a file may take, seconds: the editor may have keys to handle before.
-PATIENCE = 30.0
+TIMEOUT = 30.0
 SIGNS = {
     " ": "␣",
     "Enter": "⏎\n        ",
@@ -176,7 +176,7 @@ def typed(editor: Editor, task: Task) -> Outcome:
 
 def saved(file: Path, program: Program) -> str:
     """The text of a saved file; waits for that of the program."""
-    until = time.monotonic() + PATIENCE
+    until = time.monotonic() + TIMEOUT
     while True:
         # Helix moves the file while it writes.
         text = file.read_text() if file.exists() else ""

@@ -24,7 +24,7 @@ const TEST_EXTENSION = path.join(import.meta.dirname, "api");
 const VIRTUAL_FILES = path.join(import.meta.dirname, "virtual");
 
 /** The timeout of all waits, milliseconds. */
-const PATIENCE = Number(process.env.PATIENCE ?? 90_000);
+const TIMEOUT = Number(process.env.PATIENCE ?? 90_000);
 
 /** Hides what does not belong to the extension. */
 const SETTINGS = {
@@ -161,7 +161,7 @@ export class Stage {
       args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking"],
     });
     this.page = await this.browser.newPage({ viewport: size ?? { width: 1100, height: 680 } });
-    this.page.setDefaultTimeout(PATIENCE);
+    this.page.setDefaultTimeout(TIMEOUT);
     const payload = open ? [["openFile", this.inEditor(open)]] : [];
     if (testsPath) {
       await this.page.addInitScript(allowTests);
@@ -408,15 +408,15 @@ export function spaced(text) {
 }
 
 /** Waits until a check is truthy and returns its value; `what` describes it in the error. */
-export async function until(what, check, patience = PATIENCE) {
-  const end = Date.now() + patience;
+export async function until(what, check, timeout = TIMEOUT) {
+  const end = Date.now() + timeout;
   for (;;) {
     const value = await check();
     if (value) {
       return value;
     }
     if (Date.now() > end) {
-      throw new Error(`timed out after ${patience / 1000} s waiting until ${what}`);
+      throw new Error(`timed out after ${timeout / 1000} s waiting until ${what}`);
     }
     await new Promise((resolve) => setTimeout(resolve, 50));
   }

@@ -52,14 +52,14 @@ const WORDS: [&str; 32] = [
 
 /// An edit takes four bytes: where (two), what (file and word), and how much goes.
 const SIZE: usize = 4;
-const MOST_EDITS: usize = 24;
+const MAX_EDITS: usize = 24;
 
 /// Edits, and compares with fresh databases.
 pub(crate) fn run(data: &[u8]) {
     let mut database = Database::new();
     let mut texts = FILES.map(|(_, text)| text.to_owned());
     let files = FILES.map(|(path, text)| database.open(path, text));
-    for edit in data.chunks_exact(SIZE).take(MOST_EDITS) {
+    for edit in data.chunks_exact(SIZE).take(MAX_EDITS) {
         let index = usize::from(edit[2] >> 7);
         let text = &mut texts[index];
         let begin = boundary(text, text.len() * usize::from(u16::from_be_bytes([edit[0], edit[1]])) / 0xffff);

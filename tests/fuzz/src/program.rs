@@ -4,11 +4,11 @@ use pydslrep_analysis::{Database, Diagnostic, Severity};
 use pydslrep_syntax::{format, lex};
 
 /// Inputs are cut here: longer ones are slower, and find no more.
-const LONGEST: usize = 4096;
+const MAX_LENGTH: usize = 4096;
 
 /// Checks and formats a program. Formatting twice is formatting once, and it breaks no program.
 pub(crate) fn run(data: &[u8]) {
-    let text = String::from_utf8_lossy(&data[..data.len().min(LONGEST)]);
+    let text = String::from_utf8_lossy(&data[..data.len().min(MAX_LENGTH)]);
     assert!(lex(&text).windows(2).all(|pair| pair[0].1.end <= pair[1].1.start), "tokens overlap");
     let formatted = format(&text);
     assert_eq!(format(&formatted), formatted, "not stable: {text:?}");

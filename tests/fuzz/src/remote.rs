@@ -7,7 +7,7 @@ use pydslrep_kinematics::Drive;
 use pydslrep_scene::{Robot, Scene, SensorKind, Wheel};
 use pydslrep_simulator::{Answer, Session, World, edge};
 
-const MOST_CALLS: usize = 64;
+const MAX_CALLS: usize = 64;
 
 fn session() -> Option<Session> {
     let wheels = vec![Wheel::new("l", 0.04), Wheel::new("r", 0.04)];
@@ -20,7 +20,7 @@ fn session() -> Option<Session> {
 pub(crate) fn calls(data: &[u8]) {
     let Some(mut session) = session() else { return };
     let mut rest = data;
-    for ticket in 0..MOST_CALLS {
+    for ticket in 0..MAX_CALLS {
         let [client, high, low, after @ ..] = rest else { return };
         let length = usize::from(u16::from_be_bytes([*high, *low])).min(after.len());
         let (call, next) = after.split_at(length);

@@ -16,7 +16,7 @@ const PROGRAM: &str = "wheel a with radius 4.5\nwheel b with radius 4.5\n\
 /// The code of answers to requests whose handler has panicked.
 const INTERNAL_ERROR: i64 = -32603;
 
-const MOST_LINES: usize = 64;
+const MAX_LINES: usize = 64;
 
 type Running = Rc<RefCell<Vec<BoxFuture<'static, ()>>>>;
 
@@ -37,7 +37,7 @@ pub(crate) fn run(data: &[u8]) {
         session.handle(message.to_string().as_bytes());
         poll(&running);
     }
-    for line in data.split(|&byte| byte == b'\n').take(MOST_LINES) {
+    for line in data.split(|&byte| byte == b'\n').take(MAX_LINES) {
         if session.handle(line).is_some() {
             return;
         }

@@ -25,7 +25,7 @@ fn expect_findings(text: &str, expected: &Expect) {
 }
 
 /// How many of a hundred programs have a code at least.
-const LEAST_SHARE: u32 = 3;
+const MIN_SHARE: u32 = 3;
 
 #[test]
 fn programs_are_grammatical_and_every_code_is_in_many_of_them() {
@@ -44,7 +44,7 @@ fn programs_are_grammatical_and_every_code_is_in_many_of_them() {
         }
     }
     assert_eq!(counts.keys().copied().collect::<Vec<_>>(), MEANING);
-    let rare: Vec<_> = counts.iter().filter(|(_, count)| **count * 100 < PROGRAMS * LEAST_SHARE).collect();
+    let rare: Vec<_> = counts.iter().filter(|(_, count)| **count * 100 < PROGRAMS * MIN_SHARE).collect();
     assert!(rare.is_empty(), "of {PROGRAMS} programs too few have {rare:?}");
     assert!(clean * 100 > PROGRAMS * 8, "only {clean} of {PROGRAMS} programs are clean");
     assert!(sound * 100 > PROGRAMS * 35, "only {sound} of {PROGRAMS} programs have no errors");

@@ -285,7 +285,7 @@ impl Database {
         if let Some(file) = self.file_of(id) {
             self.unregister(id, file);
             self.forget_reads(id);
-            self.set_troubled(id, file, &[]);
+            self.update_problem_sets(id, file, &[]);
             self.entities[id.0 as usize] = None;
             self.free.push(id.0);
         }
@@ -394,7 +394,7 @@ impl Database {
         let Some(file) = self.file_of(id) else { return };
         let (problems, reads) = diagnostics::in_entity(self, id);
         self.set_reads(id, reads);
-        self.set_troubled(id, file, &problems);
+        self.update_problem_sets(id, file, &problems);
         self.touched.insert(file);
         self.last_edit.revalidated += 1;
         if let Some(data) = self.entities[id.0 as usize].as_mut() {
@@ -402,18 +402,23 @@ impl Database {
         }
     }
 
-    fn set_troubled(&mut self, id: EntityId, file: FileId, problems: &[Problem]) {
-        list(&mut self.troubled, file, id, !problems.is_empty());
-        list(&mut self.renamed, file, id, problems.iter().any(Problem::renames));
+    fn update_problem_sets(&mut self, id: EntityId, file: FileId, problems: &[Problem]) {
+        set_member(&mut self.with_problems, file, id, !problems.is_empty());
+        set_member(&mut self.renamed, file, id, problems.iter().any(Problem::renames));
     }
 }
 
-/// Lists an entity under its file, or no longer.
-fn list(lists: &mut FxHashMap<FileId, FxHashSet<EntityId>>, file: FileId, id: EntityId, is_listed: bool) {
-    if is_listed {
-        lists.entry(file).or_default().insert(id);
-    } else if let Some(listed) = lists.get_mut(&file) {
-        listed.remove(&id);
+/// Adds an entity to the set of its file, or removes it.
+fn set_member(
+    sets: &mut FxHashMap<FileId, FxHashSet<EntityId>>,
+    file: FileId,
+    id: EntityId,
+    is_member: bool,
+) {
+    if is_member {
+        sets.entry(file).or_default().insert(id);
+    } else if let Some(members) = sets.get_mut(&file) {
+        members.remove(&id);
     }
 }
 

@@ -126,14 +126,14 @@ fn files_that_come_together_are_asked_once() {
         }
         asked
     };
-    let (mut one_by_one, mut together) = (Database::new(), Database::new());
+    let (mut one_by_one, mut batched) = (Database::new(), Database::new());
     open_chain(&mut one_by_one, 20);
-    together.begin_together();
-    assert_eq!(open_chain(&mut together, 20), 0);
-    together.end_together();
-    assert_eq!(together.last_edit().revalidated, 20 * 2, "each entity once");
+    batched.begin_batch();
+    assert_eq!(open_chain(&mut batched, 20), 0);
+    batched.end_batch();
+    assert_eq!(batched.last_edit().revalidated, 20 * 2, "each entity once");
     for file in one_by_one.files() {
-        assert_eq!(together.diagnostics(file), one_by_one.diagnostics(file));
+        assert_eq!(batched.diagnostics(file), one_by_one.diagnostics(file));
     }
 }
 

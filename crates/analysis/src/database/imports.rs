@@ -26,19 +26,19 @@ pub(super) struct Postponed {
 
 impl Database {
     /// Starts a batch of changes to files that belong together, such as a program and all that it imports. The entities
-    /// that they invalidate are checked once, in [`Self::end_together`], however long the chains of imports are; until
+    /// that they invalidate are checked once, in [`Self::end_batch`], however long the chains of imports are; until
     /// then, problems are those from before the batch.
-    pub fn begin_together(&mut self) {
+    pub fn begin_batch(&mut self) {
         self.postponed.get_or_insert_default();
     }
 
-    /// Returns whether a batch begun by [`Self::begin_together`] is still open.
-    pub fn is_together(&self) -> bool {
+    /// Returns whether a batch begun by [`Self::begin_batch`] is still open.
+    pub fn is_in_batch(&self) -> bool {
         self.postponed.is_some()
     }
 
-    /// Ends what [`Self::begin_together`] began.
-    pub fn end_together(&mut self) {
+    /// Ends the batch that [`Self::begin_batch`] began, and checks what it invalidated.
+    pub fn end_batch(&mut self) {
         let Some(Postponed { with_importers, alone }) = self.postponed.take() else { return };
         let mut files = self.with_importers(with_importers);
         files.extend(alone);

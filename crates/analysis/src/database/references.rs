@@ -63,14 +63,14 @@ impl Database {
         users.into_iter().flat_map(places).collect()
     }
 
-    /// Everywhere that what `home` declares under a name is used: in `home`, and in the files that import it and mean
+    /// All uses of what `home` declares under a name: in `home`, and in the files that import it and whose name resolves to
     /// what it declares. Where `home` declares nothing of that name these are the uses in it.
     pub fn references(&self, home: FileId, kind: EntityKind, name: &SmolStr) -> Vec<FileSpan> {
-        let means_it = |file: &FileId| {
-            let meant = self.resolve(*file, kind, name).entity();
-            meant.and_then(|id| self.file_of(id)) == Some(home)
+        let resolves_to_home = |file: &FileId| {
+            let declaration = self.resolve(*file, kind, name).entity();
+            declaration.and_then(|id| self.file_of(id)) == Some(home)
         };
-        let importing = self.importing(home).into_iter().filter(means_it);
+        let importing = self.importing(home).into_iter().filter(resolves_to_home);
         std::iter::once(home)
             .chain(importing)
             .flat_map(|file| self.uses(file, kind, name).into_iter().map(move |span| FileSpan { file, span }))

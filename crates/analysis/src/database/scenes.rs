@@ -26,11 +26,11 @@ pub(super) struct SceneFile {
     /// The fingerprint of the environment when its files were last touched because of it.
     touched_with: Option<Fingerprint>,
     /// The planned run of the environment in the scene. Clones share it; its fingerprint says when it is outdated.
-    run: Arc<Mutex<Option<Known>>>,
+    run: Arc<Mutex<Option<KnownRun>>>,
 }
 
 /// The fingerprint of an environment, and its planned run.
-type Known = (Fingerprint, Option<Arc<PlannedRun>>);
+type KnownRun = (Fingerprint, Option<Arc<PlannedRun>>);
 
 impl Database {
     /// Sets the text of the scene file of an environment by its name, or takes it away. Kept while a file is closed, and

@@ -6,14 +6,14 @@ use rustc_hash::FxHashMap;
 use super::context::Context;
 use crate::EntityId;
 
-/// The longest chain of movements that do each other: far more than in any program, and fewer than Python can call.
-pub(super) const LONGEST: usize = 200;
+/// The maximum length of a chain of movements that do each other: far more than in any program, and fewer than Python can call.
+pub(super) const MAX_CALL_DEPTH: usize = 200;
 
 #[derive(Debug, Clone)]
 pub(super) enum Calls {
     /// Back to the movement that is checked, by this way: each does the next, and the last is the one that is checked.
     Back(Vec<EntityId>),
-    /// To more than [`LONGEST`] movements in a row.
+    /// To more than [`MAX_CALL_DEPTH`] movements in a row.
     TooMany,
     /// Neither.
     Elsewhere,
@@ -32,7 +32,7 @@ pub(super) fn of<'a>(context: &Context<'a>) -> impl Iterator<Item = (&'a Name, C
 fn from(context: &Context<'_>, from: EntityId) -> Calls {
     let mut before: FxHashMap<EntityId, EntityId> = FxHashMap::default();
     let mut row = vec![from];
-    for _ in 0..LONGEST {
+    for _ in 0..MAX_CALL_DEPTH {
         if row.contains(&context.id) {
             let mut way = vec![context.id];
             while let Some(id) = way.last().filter(|id| **id != from).and_then(|id| before.get(id)) {

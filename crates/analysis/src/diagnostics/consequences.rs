@@ -1,4 +1,4 @@
-//! Problems that nobody has to hear of, because the one they follow from is reported.
+//! Problems that are not reported, because the problem that causes them is.
 
 use pydslrep_syntax::EntityKind;
 use rustc_hash::FxHashSet;
@@ -8,24 +8,24 @@ use super::problem::Problem;
 use super::{syntax_error, unresolved_reference, unused_declaration};
 use crate::{Database, EntityId, FileId};
 
-/// Problems that only follow from others of the file, which are reported.
+/// Decides which problems of a file only follow from others of it, which are reported.
 pub(super) struct Consequences<'a> {
-    /// Text that may declare or use anything is hidden in a comment.
+    /// A comment that never ends may hide declarations and uses of any name.
     hidden: bool,
-    /// The names that misspelt references were meant to be: they are not reported as unused.
-    meant: FxHashSet<&'a (EntityKind, SmolStr)>,
-    /// The kinds of entities that did not read well: they may use anything of the kinds below them.
+    /// The names that misspelt references are suggested to be changed to: they are not reported as unused.
+    intended: FxHashSet<&'a (EntityKind, SmolStr)>,
+    /// The kinds of entities with syntax errors: such an entity may use any name of the kinds that it can refer to.
     broken: Vec<EntityKind>,
-    /// The names nobody declares, where as many declarations of their kind lack a name.
+    /// Names without a declaration, where at least as many declarations of their kind lack a name.
     nameless: FxHashSet<&'a (EntityKind, SmolStr)>,
 }
 
 impl<'a> Consequences<'a> {
-    /// `troubled` are the entities that have problems.
+    /// `with_problems` are the entities of the file that have problems.
     pub(super) fn new(
         database: &Database,
         file: FileId,
-        troubled: &[EntityId],
+        with_problems: &[EntityId],
         problems: &[(u32, &'a Problem)],
     ) -> Self {
         let unresolved =
@@ -33,24 +33,24 @@ impl<'a> Consequences<'a> {
         let slips = unresolved().filter_map(|(_, problem)| problem.about.as_ref());
         let mut consequences = Self {
             hidden: has_hidden_text(database, file),
-            meant: slips.collect(),
+            intended: slips.collect(),
             broken: Vec::new(),
             nameless: FxHashSet::default(),
         };
         if problems.iter().any(|(_, problem)| problem.rule == &syntax_error::RULE) {
-            consequences.look_at_broken(database, troubled, problems);
+            consequences.add_broken(database, with_problems, problems);
         }
         consequences
     }
 
-    fn look_at_broken(
+    fn add_broken(
         &mut self,
         database: &Database,
-        troubled: &[EntityId],
+        with_problems: &[EntityId],
         problems: &[(u32, &'a Problem)],
     ) {
         let mut nameless = Vec::new();
-        for id in troubled {
+        for id in with_problems {
             let Some(parse) = database.parse(*id).filter(|parse| !parse.errors.is_empty()) else {
                 continue;
             };
@@ -66,24 +66,24 @@ impl<'a> Consequences<'a> {
         }
         for kind in EntityKind::ALL {
             let lacking = nameless.iter().filter(|other| **other == kind).count();
-            let mut sought: Vec<&(EntityKind, SmolStr)> =
-                problems.iter().filter_map(|(_, problem)| problem.sought.as_ref()).collect();
-            sought.retain(|(sought, _)| *sought == kind);
-            sought.sort_unstable();
-            sought.dedup();
-            if sought.len() <= lacking {
-                self.nameless.extend(sought);
+            let mut undeclared: Vec<&(EntityKind, SmolStr)> =
+                problems.iter().filter_map(|(_, problem)| problem.undeclared.as_ref()).collect();
+            undeclared.retain(|(other, _)| *other == kind);
+            undeclared.sort_unstable();
+            undeclared.dedup();
+            if undeclared.len() <= lacking {
+                self.nameless.extend(undeclared);
             }
         }
     }
 
     pub(super) fn include(&self, problem: &Problem) -> bool {
         if problem.rule == &unused_declaration::RULE {
-            let named = problem.about.as_ref().is_some_and(|meant| self.meant.contains(meant));
+            let named = problem.about.as_ref().is_some_and(|name| self.intended.contains(name));
             return self.hidden || named || problem.users.iter().any(|kind| self.broken.contains(kind));
         }
         if problem.rule == &unresolved_reference::RULE {
-            let named = problem.sought.as_ref().is_some_and(|sought| self.nameless.contains(sought));
+            let named = problem.undeclared.as_ref().is_some_and(|name| self.nameless.contains(name));
             return self.hidden || named;
         }
         false

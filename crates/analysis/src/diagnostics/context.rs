@@ -98,9 +98,9 @@ impl<'a> Context<'a> {
 
     /// The text of a number for a message: not all of hundreds of digits.
     pub(super) fn short_text(&self, span: Span) -> String {
-        const MOST: usize = 20;
+        const MAX_CHARACTERS: usize = 20;
         let text = self.text(span);
-        let mut short: String = text.chars().take(MOST).collect();
+        let mut short: String = text.chars().take(MAX_CHARACTERS).collect();
         if short.len() < text.len() {
             short.push('…');
         }

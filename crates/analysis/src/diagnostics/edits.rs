@@ -193,14 +193,14 @@ fn renamed(database: &Database, Renaming { declared, kind, name, text }: &Renami
 /// The entity, it or one before it, that a declaration can precede without cutting another one in two: what comes
 /// before it is complete, and ends on a line before.
 fn declared_before(database: &Database, id: EntityId) -> Option<EntityId> {
-    /// A text that is broken for longer is no place for a declaration.
-    const FARTHEST: usize = 64;
+    /// How far before the entity to look: longer invalid text is no place for a declaration.
+    const MAX_SLOTS_BEFORE: usize = 64;
     let entity = database.entity(id)?;
     let (index, _) = database.slot_at(entity.file, entity.span.start);
     let slots = database.slots(entity.file).get(..=index)?;
     let is_free =
         |at: &usize| *at == 0 || slots.get(at - 1).is_some_and(|before| is_over(database, before.entity));
-    let at = (index.saturating_sub(FARTHEST)..=index).rev().find(is_free)?;
+    let at = (index.saturating_sub(MAX_SLOTS_BEFORE)..=index).rev().find(is_free)?;
     slots.get(at).map(|slot| slot.entity)
 }
 

@@ -30,32 +30,32 @@ const PAGE: Page = Page {
 };
 
 /// Centimetres.
-const SMALLEST: f64 = 0.5;
-const LARGEST: f64 = 100.0;
+const MIN_PLAUSIBLE: f64 = 0.5;
+const MAX_PLAUSIBLE: f64 = 100.0;
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(Entity::Wheel(wheel)) = context.tree else { return };
     let Some(radius) = &wheel.radius else { return };
     let Some(value) = radius.value.filter(|value| is_possible(*value)) else { return };
-    if value > LARGEST {
+    if value > MAX_PLAUSIBLE {
         let problem = RULE
             .problem(radius.span, format!("with a radius of {value} cm this wheel is taller than a person"));
         let note = "a radius is in centimetres; was this one measured in millimetres?";
         problems.push(converted(context, problem.note(note), radius, value / 10.0));
-    } else if value > 0.0 && value < SMALLEST {
-        let meant = rounded(value * 100.0);
-        let problem = if is_plausible(meant) {
-            RULE.problem(radius.span, format!("did you mean {meant} cm? radii are in centimetres"))
+    } else if value > 0.0 && value < MIN_PLAUSIBLE {
+        let in_centimetres = rounded(value * 100.0);
+        let problem = if is_plausible(in_centimetres) {
+            RULE.problem(radius.span, format!("did you mean {in_centimetres} cm? radii are in centimetres"))
         } else {
             RULE.problem(radius.span, format!("with a radius of {value} cm this wheel is smaller than a pea"))
         };
         let note = "a radius is in centimetres; was this one measured in metres?";
-        problems.push(converted(context, problem.note(note), radius, meant));
+        problems.push(converted(context, problem.note(note), radius, in_centimetres));
     }
 }
 
 fn is_plausible(value: f64) -> bool {
-    (SMALLEST..=LARGEST).contains(&value)
+    (MIN_PLAUSIBLE..=MAX_PLAUSIBLE).contains(&value)
 }
 
 /// Without what a multiplication of binary fractions adds: 0.07 · 100 is 7.000000000000001.
@@ -64,12 +64,15 @@ fn rounded(value: f64) -> f64 {
     (value * DIGITS).round() / DIGITS
 }
 
-/// Offers the value that is meant, where it would be a plausible one.
-fn converted(context: &Context<'_>, problem: Problem, radius: &Number, meant: f64) -> Problem {
-    if !is_plausible(meant) {
+/// Offers the value in centimetres, if it is plausible.
+fn converted(context: &Context<'_>, problem: Problem, radius: &Number, in_centimetres: f64) -> Problem {
+    if !is_plausible(in_centimetres) {
         return problem;
     }
-    problem.suggestion(format!("change to {meant}"), [context.replace(radius.span, meant.to_string())])
+    problem.suggestion(
+        format!("change to {in_centimetres}"),
+        [context.replace(radius.span, in_centimetres.to_string())],
+    )
 }
 
 #[cfg(test)]

@@ -45,14 +45,14 @@ environment yard has { rover } robots with { trip } moves",
 
 /// Degrees.
 const FULL_TURN: f64 = 360.0;
-const FARTHEST: f64 = 100.0 * FULL_TURN;
+const MAX_ANGLE: f64 = 100.0 * FULL_TURN;
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     for action in context.actions() {
         let ActionKind::Turn(turn) = &action.kind else { continue };
         let Some(angle) = &turn.angle else { continue };
         match angle.value.filter(|value| value.is_finite()) {
-            Some(value) if value.abs() > FARTHEST => problems.push(beyond(context, angle)),
+            Some(value) if value.abs() > MAX_ANGLE => problems.push(beyond(context, angle)),
             Some(value) if value < 0.0 => problems.push(backwards(context, turn, angle)),
             // `invalid-arc` says what is wrong with it.
             Some(0.0) if turn.circle.is_some() => {}
@@ -67,7 +67,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
 
 fn beyond(context: &Context<'_>, angle: &Number) -> Problem {
     let written = context.short_text(angle.span);
-    RULE.problem(angle.span, format!("an angle is at most {FARTHEST} degrees (100 turns), not {written}"))
+    RULE.problem(angle.span, format!("an angle is at most {MAX_ANGLE} degrees (100 turns), not {written}"))
         .severity(Severity::Error)
         .help("write how far to turn, up to 360")
 }

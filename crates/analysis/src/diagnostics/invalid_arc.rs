@@ -3,7 +3,7 @@
 use pydslrep_syntax::ast::{ActionKind, Circle, Turn};
 
 use super::context::Context;
-use super::number_out_of_range::FARTHEST;
+use super::number_out_of_range::MAX_DISTANCE;
 use super::problem::Problem;
 use super::{Applicability, Page, Rule};
 use crate::Severity;
@@ -71,7 +71,7 @@ fn radius(context: &Context<'_>, circle: &Circle) -> Option<Problem> {
     }
     let problem =
         || RULE.problem(radius.span, "the radius of a circle can be at most 1000 km (1000000 meters)");
-    (metres > FARTHEST).then(|| problem().help("write a shorter radius"))
+    (metres > MAX_DISTANCE).then(|| problem().help("write a shorter radius"))
 }
 
 fn no_turn(turn: &Turn) -> Option<Problem> {

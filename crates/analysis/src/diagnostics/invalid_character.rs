@@ -30,7 +30,7 @@ const PAGE: Page = Page {
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let mut closed = Vec::new();
-    for error in context.errors.iter().filter(|error| !is_said(context, error)) {
+    for error in context.errors.iter().filter(|error| !is_reported(context, error)) {
         match &error.kind {
             SyntaxErrorKind::InvalidName { written } => problems.push(name(context, error.span, written)),
             SyntaxErrorKind::ForeignComment { written } => {
@@ -50,7 +50,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
 }
 
 /// Returns whether the problem of the whole statement covers the error. An invalid name stays one in it.
-fn is_said(context: &Context<'_>, error: &SyntaxError) -> bool {
+fn is_reported(context: &Context<'_>, error: &SyntaxError) -> bool {
     let stays = match &error.kind {
         SyntaxErrorKind::InvalidName { written } => {
             context.rewrites.iter().any(|rewrite| rewrite.keeps(written))

@@ -60,10 +60,10 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
 
 fn none(context: &Context<'_>, count: &Number) -> Problem {
     let written = context.short_text(count.span);
-    let (least, most) = (COUNTS.start(), COUNTS.end());
+    let (min, max) = (COUNTS.start(), COUNTS.end());
     RULE.problem(
         count.span,
-        format!("a block is repeated from {least} to {most} times, a whole number, not {written}"),
+        format!("a block is repeated from {min} to {max} times, a whole number, not {written}"),
     )
     .severity(Severity::Error)
     .help("write how often; for more rounds, put one `repeat` into another")

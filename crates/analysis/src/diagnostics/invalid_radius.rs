@@ -27,12 +27,12 @@ const PAGE: Page = Page {
 };
 
 /// Centimetres.
-const SMALLEST: f64 = 0.001;
-const LARGEST: f64 = 100_000.0;
+const MIN_RADIUS: f64 = 0.001;
+const MAX_RADIUS: f64 = 100_000.0;
 
 /// Returns whether any wheel could have this radius, in centimetres.
 pub(super) fn is_possible(radius: f64) -> bool {
-    (SMALLEST..=LARGEST).contains(&radius)
+    (MIN_RADIUS..=MAX_RADIUS).contains(&radius)
 }
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
@@ -45,7 +45,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let message = if value <= 0.0 {
         format!("a wheel's radius must be above zero, not {written} cm")
     } else {
-        format!("a wheel's radius is from {SMALLEST} to {LARGEST} cm, not {written}")
+        format!("a wheel's radius is from {MIN_RADIUS} to {MAX_RADIUS} cm, not {written}")
     };
     let problem = RULE.problem(radius.span, message);
     problems.push(problem.help("write the radius in centimetres, such as `4.5`"));

@@ -43,8 +43,8 @@ environment yard has { rover } robots with { trip } moves",
 };
 
 /// Centimetres per second.
-const SLOWEST: f64 = 0.001;
-const FASTEST: f64 = 10_000.0;
+const MIN_SPEED: f64 = 0.001;
+const MAX_SPEED: f64 = 10_000.0;
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     for action in context.actions() {
@@ -57,7 +57,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
         let Some(speed) = speed else { continue };
         match speed.value.filter(|value| value.is_finite()) {
             Some(value) if value <= 0.0 => problems.push(problem(context, distance, speed)),
-            Some(value) if !(SLOWEST..=FASTEST).contains(&value) => problems.push(beyond(context, speed)),
+            Some(value) if !(MIN_SPEED..=MAX_SPEED).contains(&value) => problems.push(beyond(context, speed)),
             _ => {}
         }
     }
@@ -65,7 +65,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
 
 fn beyond(context: &Context<'_>, speed: &Number) -> Problem {
     let written = context.short_text(speed.span);
-    RULE.problem(speed.span, format!("a speed is from {SLOWEST} to {FASTEST} cm/s, not {written}"))
+    RULE.problem(speed.span, format!("a speed is from {MIN_SPEED} to {MAX_SPEED} cm/s, not {written}"))
         .help("write how fast to drive, or leave out `at` and drive at 9.0 cm/s")
 }
 

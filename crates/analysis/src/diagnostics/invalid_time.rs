@@ -1,6 +1,6 @@
 //! `invalid-time`: a wait of no time or of more than a day, or a plan of more than 30 days.
 
-use pydslrep_kinematics::{Drive, LONGEST_PLAN};
+use pydslrep_kinematics::{Drive, MAX_PLAN_DURATION};
 use pydslrep_syntax::ast::{Action, ActionKind, Entity, Movement, Number, Repeat, Rounds, Wait};
 use rustc_hash::FxHashMap;
 
@@ -47,7 +47,7 @@ environment yard has { rover } robots with { trip } moves",
 };
 
 /// Seconds.
-const LONGEST_WAIT: f64 = 86_400.0;
+const MAX_WAIT: f64 = 86_400.0;
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(Entity::Movement(movement)) = context.tree else { return };
@@ -66,10 +66,10 @@ fn wait(context: &Context<'_>, action: &Action, seconds: &Number) -> Option<Prob
         let problem = RULE.problem(seconds.span, "waiting for 0 seconds does nothing");
         return Some(problem.fix("remove the wait", [context.remove(action.span)]));
     }
-    (!(0.0..=LONGEST_WAIT).contains(&value)).then(|| {
+    (!(0.0..=MAX_WAIT).contains(&value)).then(|| {
         RULE.problem(
             seconds.span,
-            format!("a wait is from 0 to {LONGEST_WAIT} seconds (a day) long, not {written}"),
+            format!("a wait is from 0 to {MAX_WAIT} seconds (a day) long, not {written}"),
         )
         .severity(Severity::Error)
         .help("write how many seconds to wait")
@@ -90,11 +90,13 @@ fn too_long(context: &Context<'_>, movement: &Movement) -> Vec<Problem> {
     let mut clock = Clock { context, drive, totals: FxHashMap::default() };
     let times: Vec<f64> = loops.iter().map(|found| clock.seconds(context.id, &found.time, 0)).collect();
     let timed = || loops.iter().zip(times.iter().copied());
-    let alone: Vec<Problem> =
-        timed().filter(|(_, seconds)| *seconds > LONGEST_PLAN).map(|(found, _)| problem(found)).collect();
+    let alone: Vec<Problem> = timed()
+        .filter(|(_, seconds)| *seconds > MAX_PLAN_DURATION)
+        .map(|(found, _)| problem(found))
+        .collect();
     let always = || timed().filter(|(found, _)| found.is_always_driven);
     let together = clock.seconds(context.id, &rest, 0) + always().map(|(_, seconds)| seconds).sum::<f64>();
-    if !alone.is_empty() || together <= LONGEST_PLAN {
+    if !alone.is_empty() || together <= MAX_PLAN_DURATION {
         return alone;
     }
     let longest = always().max_by(|(_, one), (_, other)| one.total_cmp(other));
@@ -128,7 +130,7 @@ fn outermost_loops<'a>(actions: &'a [Action], is_always_driven: bool, found: &mu
 }
 
 fn problem(found: &Loop<'_>) -> Problem {
-    let days = LONGEST_PLAN / 86_400.0;
+    let days = MAX_PLAN_DURATION / 86_400.0;
     let problem = RULE.problem(found.count.span, format!("these rounds take more than {days} days"));
     problem.severity(Severity::Error).help("repeat the block less often")
 }
@@ -158,7 +160,7 @@ impl Clock<'_, '_> {
         }
         // Circles, and chains that are too long, are reported by another rule.
         self.totals.insert(id, 0.0);
-        let summary = self.context.summary(id).filter(|_| depth < calls::LONGEST);
+        let summary = self.context.summary(id).filter(|_| depth < calls::MAX_CALL_DEPTH);
         let total = summary.map_or(0.0, |summary| self.seconds(id, &summary.time, depth));
         self.totals.insert(id, total);
         total

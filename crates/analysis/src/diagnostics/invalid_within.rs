@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use pydslrep_scene::{ENDING, Robot, Scene};
-use pydslrep_syntax::ast::{Action, Condition, Entity, Name, SensorKind, Within};
+use pydslrep_syntax::ast::{Action, Condition, Entity, Name, SensorKeyword, Within};
 use pydslrep_syntax::{EntityKind, Span};
 
 use super::context::Context;
-use super::number_out_of_range::FARTHEST;
+use super::number_out_of_range::MAX_DISTANCE;
 use super::planned_collision::PlannedRun;
 use super::problem::Problem;
 use super::{Applicability, Page, Rule};
@@ -69,7 +69,7 @@ fn problem(context: &Context<'_>, condition: &Condition, within: &Within) -> Opt
                 .help("write a distance above zero, or leave out `within`"),
         );
     }
-    let far = value * within.unit.map_or(1.0, |(unit, _)| unit.in_metres()) > FARTHEST;
+    let far = value * within.unit.map_or(1.0, |(unit, _)| unit.in_metres()) > MAX_DISTANCE;
     (!far && are_bumpers(context, condition)).then(|| {
         RULE.problem(distance.span, "a bumper does not measure distances")
             .severity(Severity::Warning)
@@ -164,7 +164,7 @@ fn are_bumpers(context: &Context<'_>, condition: &Condition) -> bool {
     let is_bumper = |name| {
         let id = context.resolve(EntityKind::Sensor, name).entity();
         let sensor = id.and_then(|id| context.signature(id)).and_then(Signature::sensor);
-        sensor.is_some_and(|sensor| matches!(sensor.kind, Some((SensorKind::Bumper, _))))
+        sensor.is_some_and(|sensor| matches!(sensor.kind, Some((SensorKeyword::Bumper, _))))
     };
     let names = &condition.sensors.names;
     !names.is_empty() && !condition.sensors.broken && names.iter().all(is_bumper)
@@ -211,11 +211,11 @@ mod tests {
         let text = program(actions) + ENVIRONMENT;
         let mut database = Database::new();
         let file = database.open("a.pyr", &text);
-        let mut said = |scene: Option<&str>| {
+        let mut warnings_with = |scene: Option<&str>| {
             database.set_scene(file, "e", scene);
             warnings(&database, "a.pyr")
         };
-        let without = said(None);
+        let without = warnings_with(None);
         expect![[r#"
             2: a bumper does not measure distances
         "#]]
@@ -225,15 +225,15 @@ mod tests {
             150: these sensors see nothing farther away than 1 m
             2: a bumper does not measure distances
         "#]]
-        .assert_eq(&said(Some("")));
+        .assert_eq(&warnings_with(Some("")));
         expect![[r#"
             3: this sensor sees nothing farther away than 2 m
             2: a bumper does not measure distances
         "#]]
-        .assert_eq(&said(Some("[robots.r.sensors.s]\nrange = 2")));
-        assert_eq!(said(Some("[robots.r.sensors.s]\nrange = 3")), without);
+        .assert_eq(&warnings_with(Some("[robots.r.sensors.s]\nrange = 2")));
+        assert_eq!(warnings_with(Some("[robots.r.sensors.s]\nrange = 3")), without);
         assert_eq!(
-            said(Some("[robots.r.sensors.s]\nrange = \"far\"")),
+            warnings_with(Some("[robots.r.sensors.s]\nrange = \"far\"")),
             without,
             "what is wrong is not known"
         );
@@ -246,17 +246,17 @@ mod tests {
         let main = database.open("main.pyr", &format!("import \"parts.pyr\"{ENVIRONMENT}"));
         database.set_scene(main, "e", Some(""));
         assert_eq!(warnings(&database, "main.pyr"), "");
-        let said = warnings(&database, "parts.pyr");
-        assert!(said.starts_with("3: this sensor sees nothing"), "{said}");
+        let reported = warnings(&database, "parts.pyr");
+        assert!(reported.starts_with("3: this sensor sees nothing"), "{reported}");
         let f = format!("{ENVIRONMENT} environment f has {{ r }} robots with {{ m }} moves");
         database.open("main.pyr", &format!("import \"parts.pyr\"{f}"));
         database.set_scene(main, "f", Some(""));
-        assert_eq!(warnings(&database, "parts.pyr"), said, "once for all environments");
+        assert_eq!(warnings(&database, "parts.pyr"), reported, "once for all environments");
         database.take_touched();
         // The place of the warning has moved, though the movement itself is the same.
         database.edit(parts, Span::at(0), "\n");
         assert!(database.take_touched().contains(&parts));
-        assert_eq!(warnings(&database, "parts.pyr"), said);
+        assert_eq!(warnings(&database, "parts.pyr"), reported);
         let text = database.text(parts).unwrap().to_string();
         let place = u32::try_from(text.find("within 3").unwrap()).unwrap();
         database.edit(parts, Span::new(place + 7, place + 8), "1");

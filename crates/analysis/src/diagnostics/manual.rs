@@ -25,7 +25,7 @@ pub struct Page {
 /// The best fix that a rule may offer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Applicability {
-    /// None: only a person knows what was meant.
+    /// None: only the author knows the intention.
     Never,
     /// One that a person should look at first.
     Suggested,

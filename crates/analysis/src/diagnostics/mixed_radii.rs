@@ -60,7 +60,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
 }
 
 fn radius<'a>(context: &Context<'a>, name: &'a Name) -> Option<(&'a Name, EntityId, &'a Wheel, f64)> {
-    // Where there is a syntax error, another radius may be meant.
+    // Where there is a syntax error, another radius may be intended.
     let (id, wheel) = context.wheel(name).filter(|(id, _)| context.is_sound(*id))?;
     // One that is beyond all numbers has been reported as that.
     let radius = wheel.radius.as_ref()?.value.filter(|radius| radius.is_finite())?;

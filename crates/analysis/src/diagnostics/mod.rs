@@ -65,7 +65,7 @@ use pydslrep_syntax::Span;
 use self::consequences::Consequences;
 use self::context::Context;
 pub use self::manual::{Applicability, Page, index};
-pub use self::nested_too_deep::MOST_BLOCKS;
+pub use self::nested_too_deep::MAX_BLOCK_DEPTH;
 pub use self::not_in_article::beyond_article;
 pub(crate) use self::planned_collision::PlannedRun;
 use self::problem::Brace;
@@ -240,9 +240,9 @@ pub(crate) fn visit_in_file(
 
 /// The problems of a file's entities without those that only follow from others, in the order of the text.
 fn reported(database: &Database, file: FileId) -> Vec<Reported<'_>> {
-    let troubled = database.troubled(file);
-    let ids: Vec<EntityId> = troubled.iter().map(|entity| entity.id).collect();
-    let problems: Vec<(u32, &Problem)> = troubled
+    let entities = database.entities_with_problems(file);
+    let ids: Vec<EntityId> = entities.iter().map(|entity| entity.id).collect();
+    let problems: Vec<(u32, &Problem)> = entities
         .into_iter()
         .flat_map(|entity| {
             database.problems(entity.id).iter().map(move |problem| (entity.span.start, problem))

@@ -97,7 +97,7 @@ mod tests {
 
     #[test]
     fn a_robot_of_the_same_name_is_another_one() {
-        let said = |own: &str| {
+        let count = |own: &str| {
             let mut database = crate::Database::new();
             database.open("parts.pyr", &format!("{PARTS}movement n of r {{ turn left }}"));
             let text = format!("import \"parts.pyr\"\n{own}movement m of r {{ do n }}");
@@ -105,6 +105,6 @@ mod tests {
             database.diagnostics(file).iter().filter(|found| found.code() == super::RULE.code).count()
         };
         let robot = "robot r with port 1 has { a b } wheels\n";
-        assert_eq!((said(""), said(robot)), (0, 1));
+        assert_eq!((count(""), count(robot)), (0, 1));
     }
 }

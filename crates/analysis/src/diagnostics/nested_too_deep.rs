@@ -3,7 +3,7 @@
 use pydslrep_syntax::ast::{Action, Entity, Movement};
 use pydslrep_syntax::{EntityKind, escape, format};
 
-use super::calls::{self, Calls, LONGEST};
+use super::calls::{self, Calls, MAX_CALL_DEPTH};
 use super::context::Context;
 use super::edits::ProblemEdit;
 use super::problem::Problem;
@@ -64,7 +64,7 @@ environment yard has { rover } robots with { trip } moves",
 };
 
 /// The maximum depth of nested blocks.
-pub const MOST_BLOCKS: usize = 16;
+pub const MAX_BLOCK_DEPTH: usize = 16;
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(Entity::Movement(movement)) = context.tree else { return };
@@ -73,8 +73,11 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     problems.extend(found.into_iter().map(|action| problem(context, movement, action)));
     let done = calls::of(context).filter(|(_, calls)| matches!(calls, Calls::TooMany));
     problems.extend(done.map(|(name, _)| {
-        RULE.problem(name.span, format!("more than {LONGEST} movements do each other in a row from here"))
-            .help("put what they do into fewer movements")
+        RULE.problem(
+            name.span,
+            format!("more than {MAX_CALL_DEPTH} movements do each other in a row from here"),
+        )
+        .help("put what they do into fewer movements")
     }));
 }
 
@@ -82,7 +85,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
 fn too_deep<'a>(actions: &'a [Action], depth: usize, found: &mut Vec<&'a Action>) {
     for action in actions {
         let mut blocks = action.blocks().peekable();
-        if depth == MOST_BLOCKS && blocks.peek().is_some() {
+        if depth == MAX_BLOCK_DEPTH && blocks.peek().is_some() {
             found.push(action);
             continue;
         }
@@ -94,7 +97,7 @@ fn problem(context: &Context<'_>, movement: &Movement, action: &Action) -> Probl
     let keyword = context.tokens.iter().find(|(_, span)| span.start == action.span.start);
     let span = keyword.map_or(action.span, |(_, span)| *span);
     let problem = RULE
-        .problem(span, format!("more than {MOST_BLOCKS} blocks are one in another here"))
+        .problem(span, format!("more than {MAX_BLOCK_DEPTH} blocks are one in another here"))
         .help("put the inner blocks into a movement of their own, and `do` that");
     match extraction(context, movement, action) {
         Some((name, edits)) => problem.suggestion(format!("extract into new movement `{name}`"), edits),

@@ -83,7 +83,7 @@ fn extensions(tokens: &[Token], action: &Action) -> Vec<Span> {
     }
 }
 
-/// An `until` is the article's where nothing else is said of the turn, but for what its condition says beside the sensors.
+/// An `until` is in the article if the turn has nothing else, except for the words after its condition's list of sensors.
 fn in_turn(turn: &Turn) -> Vec<Span> {
     let circle = turn.circle.as_ref().map(|circle| circle.span);
     let clauses = circle.into_iter().chain(turn.speed.as_ref().map(|speed| speed.span)).chain(turn.reverse);
@@ -117,16 +117,16 @@ mod tests {
         let mut database = Database::new();
         let file = database.open("test.pyr", &program);
         database.open("x.pyr", "");
-        let said = |database: &Database| {
+        let reported = |database: &Database| {
             let all = database.diagnostics(file);
             let of_rule = all.into_iter().filter(|found| found.code() == "not-in-article");
             of_rule.map(|found| found.span.text(&program).to_owned() + "\n").collect::<String>()
         };
-        assert_eq!(said(&database), "");
+        assert_eq!(reported(&database), "");
         database.set_edition(file, Edition::Article);
-        expected.assert_eq(&said(&database));
+        expected.assert_eq(&reported(&database));
         database.set_edition(file, Edition::Current);
-        assert_eq!(said(&database), "");
+        assert_eq!(reported(&database), "");
     }
 
     #[test]

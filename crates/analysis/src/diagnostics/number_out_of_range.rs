@@ -42,7 +42,7 @@ environment yard has { rover } robots with { trip } moves",
 };
 
 /// Metres.
-pub(super) const FARTHEST: f64 = 1_000_000.0;
+pub(super) const MAX_DISTANCE: f64 = 1_000_000.0;
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     if let Some(Entity::Wheel(wheel)) = context.tree {
@@ -69,14 +69,14 @@ fn too_far_within(within: &Within) -> Option<Problem> {
     let distance = within.distance.as_ref()?;
     let metres = distance.value? * within.unit.map_or(1.0, |(unit, _)| unit.in_metres());
     let problem = || RULE.problem(distance.span, "no sensor sees farther than 1000 km (1000000 meters)");
-    (metres.is_finite() && metres > FARTHEST).then(|| problem().help("write a shorter distance"))
+    (metres.is_finite() && metres > MAX_DISTANCE).then(|| problem().help("write a shorter distance"))
 }
 
 fn too_far(step: &Move) -> Option<Problem> {
     let distance = step.distance.as_ref()?;
     let metres = distance.value?.abs() * step.unit.map_or(1.0, |(unit, _)| unit.in_metres());
     let problem = || RULE.problem(distance.span, "a move can be at most 1000 km (1000000 meters) long");
-    (metres.is_finite() && metres > FARTHEST).then(|| problem().help("write a shorter distance"))
+    (metres.is_finite() && metres > MAX_DISTANCE).then(|| problem().help("write a shorter distance"))
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use pydslrep_kinematics::{ActionIndex, Place};
-use pydslrep_scene::{Collision, ENDING, Scene, Thing, collisions};
+use pydslrep_scene::{Collision, ENDING, Scene, SceneObject, collisions};
 use pydslrep_syntax::ast::Entity;
 
 use super::context::Context;
@@ -65,7 +65,7 @@ fn check(_: &Context<'_>, _: &mut Vec<Problem>) {}
 pub(super) fn in_runs(database: &Database, file: FileId, runs: &[Arc<PlannedRun>]) -> Vec<Diagnostic> {
     let problems = runs.iter().flat_map(|run| {
         let located = Located { database, run };
-        run.met.iter().filter_map(move |collision| located.problem(collision))
+        run.collisions.iter().filter_map(move |collision| located.problem(collision))
     });
     problems.filter(|problem| problem.file == file).collect()
 }
@@ -78,7 +78,7 @@ pub(crate) struct PlannedRun {
     scene: Scene,
     /// As in the environment.
     movements: Vec<EntityId>,
-    met: Vec<Collision>,
+    collisions: Vec<Collision>,
     pub(super) out_of_range: Vec<OutOfRange>,
 }
 
@@ -88,14 +88,14 @@ impl PlannedRun {
         let (environment, movements) = database.resolved(id)?;
         let scene = database.scene(id, &environment).ok()?;
         let plan = plan(&environment, &scene).ok()?;
-        let met = collisions(&scene, &plan);
+        let collisions = collisions(&scene, &plan);
         let out_of_range = invalid_within::out_of_range(database, &environment, &scene, &movements);
-        Some(Self { environment, scene, movements, met, out_of_range })
+        Some(Self { environment, scene, movements, collisions, out_of_range })
     }
 
     /// Returns whether it has problems.
     pub(crate) fn has_problems(&self) -> bool {
-        !self.met.is_empty() || !self.out_of_range.is_empty()
+        !self.collisions.is_empty() || !self.out_of_range.is_empty()
     }
 
     /// The name of the environment.
@@ -103,10 +103,10 @@ impl PlannedRun {
         &self.environment.name
     }
 
-    fn name(&self, thing: Thing) -> &str {
-        match thing {
-            Thing::Robot(robot) => self.scene.robots.get(robot).map_or("", |robot| &robot.name),
-            Thing::Obstacle(obstacle) => {
+    fn name(&self, object: SceneObject) -> &str {
+        match object {
+            SceneObject::Robot(robot) => self.scene.robots.get(robot).map_or("", |robot| &robot.name),
+            SceneObject::Obstacle(obstacle) => {
                 self.scene.obstacles.get(obstacle).map_or("", |obstacle| &obstacle.name)
             }
         }
@@ -123,7 +123,7 @@ struct Located<'a> {
 impl Located<'_> {
     fn problem(&self, collision: &Collision) -> Option<Diagnostic> {
         let place = self.place(collision.action, &collision.place, String::new())?;
-        let robot = self.run.name(Thing::Robot(collision.robot));
+        let robot = self.run.name(SceneObject::Robot(collision.robot));
         let with = self.run.name(collision.with);
         let when = collision.time.map_or_else(String::new, |time| format!(" after {time:.1} s"));
         // Adding zero makes a rounded -0 a 0.
@@ -176,7 +176,7 @@ mod tests {
     const PARTS: &str = "wheel a with radius 4 wheel b with radius 4\n\
         robot r with port 1 has { a b } wheels robot q with port 2 has { a b } wheels\n";
 
-    fn said(database: &Database, path: &str) -> String {
+    fn reported(database: &Database, path: &str) -> String {
         let file = database.file(path).unwrap();
         let mut out = String::new();
         for found in database.diagnostics(file).iter().filter(|found| found.code() == "planned-collision") {
@@ -192,11 +192,11 @@ mod tests {
     fn check(program: &str, scene: &str, expected: &Expect) {
         let mut database = Database::new();
         let file = database.open("test.pyr", &format!("{PARTS}{program}"));
-        assert_eq!(said(&database, "test.pyr"), "", "without a scene nothing is in the way");
+        assert_eq!(reported(&database, "test.pyr"), "", "without a scene nothing is in the way");
         database.set_scene(file, "e", Some(scene));
-        expected.assert_eq(&said(&database, "test.pyr"));
+        expected.assert_eq(&reported(&database, "test.pyr"));
         database.set_scene(file, "e", None);
-        assert_eq!(said(&database, "test.pyr"), "");
+        assert_eq!(reported(&database, "test.pyr"), "");
     }
 
     const CRATE: &str = "[[box]]\nname = \"crate\"\nat = [1, 0]\nsize = [0.4, 0.4]\n";
@@ -286,28 +286,28 @@ mod tests {
         let main = "import \"parts.pyr\"\nenvironment e has { r } robots with { m } moves";
         let file = database.open("main.pyr", main);
         database.set_scene(file, "e", Some(CRATE));
-        assert_eq!(said(&database, "main.pyr"), "");
-        assert!(said(&database, "parts.pyr").starts_with("move 2 meters: `r` runs into `crate` here"));
+        assert_eq!(reported(&database, "main.pyr"), "");
+        assert!(reported(&database, "parts.pyr").starts_with("move 2 meters: `r` runs into `crate` here"));
         database.take_touched();
         // Nothing in the other file changes, but what there is to say of it does.
         let parts = database.file("parts.pyr").unwrap();
         let at = u32::try_from(main.find("m }").unwrap()).unwrap();
         database.edit(file, Span::new(at, at + 1), "");
         assert_eq!(database.take_touched(), [parts, file]);
-        assert_eq!(said(&database, "parts.pyr"), "");
+        assert_eq!(reported(&database, "parts.pyr"), "");
         database.edit(file, Span::at(at), "m");
-        assert!(said(&database, "parts.pyr").contains("crate"));
+        assert!(reported(&database, "parts.pyr").contains("crate"));
         let radius = u32::try_from(PARTS.find("4 wheel b").unwrap()).unwrap();
         database.edit(parts, Span::new(radius, radius + 1), "x");
-        assert_eq!(said(&database, "parts.pyr"), "", "what has errors is not planned");
+        assert_eq!(reported(&database, "parts.pyr"), "", "what has errors is not planned");
     }
 
     #[test]
     fn the_page_says_what_is_not_looked_at() {
         let why = super::PAGE.why;
         let digits = why.replace(' ', "");
-        assert!(digits.contains(&format!("{}actions", pydslrep_kinematics::MOST_ACTIONS)), "{why}");
-        // The bound of the search is `MOST_STEPS` in `pydslrep_scene`.
+        assert!(digits.contains(&format!("{}actions", pydslrep_kinematics::MAX_ACTIONS)), "{why}");
+        // The bound of the search is `MAX_STEPS` in `pydslrep_scene`.
         for words in ["the search", "`until`", "`if`", "`slam`"] {
             assert!(why.contains(words), "{words}: {why}");
         }

@@ -20,8 +20,8 @@ pub(crate) struct Problem {
     pub(crate) related: Vec<ProblemPlace>,
     /// The declaration that the problem is about, where another problem could be about it too.
     pub(crate) about: Option<(EntityKind, SmolStr)>,
-    /// The kind and the name that were looked for without success.
-    pub(crate) sought: Option<(EntityKind, SmolStr)>,
+    /// The kind and the name of a reference that no declaration matches.
+    pub(crate) undeclared: Option<(EntityKind, SmolStr)>,
     /// The kinds of entities that could have prevented it by using what it is about.
     pub(crate) users: &'static [EntityKind],
     /// The brace it is about, where another entity may have the other half.
@@ -76,7 +76,7 @@ impl Rule {
             note: None,
             related: Vec::new(),
             about: None,
-            sought: None,
+            undeclared: None,
             users: &[],
             brace: None,
             fixes: Vec::new(),
@@ -110,8 +110,8 @@ impl Problem {
         self
     }
 
-    pub(super) fn sought(mut self, kind: EntityKind, name: &SmolStr) -> Self {
-        self.sought = Some((kind, name.clone()));
+    pub(super) fn undeclared(mut self, kind: EntityKind, name: &SmolStr) -> Self {
+        self.undeclared = Some((kind, name.clone()));
         self
     }
 

@@ -114,16 +114,16 @@ mod tests {
         let importing = format!("import \"b.pyr\"\n{}\nmovement o of r {{ do m }}", program("do n"));
         let a = database.open("a.pyr", &importing);
         let b = database.open("b.pyr", "import \"a.pyr\"\nmovement n of r { turn left do m }");
-        let mut said = Vec::new();
+        let mut reported = Vec::new();
         for file in [a, b] {
             let own = database.diagnostics(file).into_iter().filter(|found| found.code() == super::RULE.code);
-            said.extend(own.map(|found| {
+            reported.extend(own.map(|found| {
                 let way = found.related.iter().map(|step| (step.file, database.slice(step.file, step.span)));
                 (file, database.slice(file, found.span), way.collect::<Vec<_>>())
             }));
         }
         let [n, m] = ["n", "m"].map(str::to_owned);
-        // Nothing is said of `o`, which only leads to it.
-        assert_eq!(said, [(a, n.clone(), vec![(b, n.clone())]), (b, m.clone(), vec![(a, m)])]);
+        // Nothing is reported for `o`, which only leads to it.
+        assert_eq!(reported, [(a, n.clone(), vec![(b, n.clone())]), (b, m.clone(), vec![(a, m)])]);
     }
 }

@@ -1,6 +1,6 @@
 //! `slam-sensors`: exploring takes five distance sensors.
 
-use pydslrep_syntax::ast::{ActionKind, Entity, Robot, SensorKind};
+use pydslrep_syntax::ast::{ActionKind, Entity, Robot, SensorKeyword};
 
 use super::context::Context;
 use super::problem::Problem;
@@ -93,7 +93,7 @@ fn distance_sensors(context: &Context<'_>, id: EntityId, robot: &Robot) -> Optio
     let mut counted: Vec<&str> = Vec::new();
     for name in names {
         let sensor = context.sensor_of(id, name)?.sensor()?;
-        let sees = !matches!(sensor.kind, Some((SensorKind::Bumper, _)));
+        let sees = !matches!(sensor.kind, Some((SensorKeyword::Bumper, _)));
         if sees && !counted.contains(&name.text.as_str()) {
             counted.push(&name.text);
         }

@@ -60,7 +60,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
 }
 
 fn problem(context: &Context<'_>, tree: &Entity, kind: EntityKind, name: &Name, taken: &[&str]) -> Problem {
-    let mut problem = RULE.problem(name.span, message(context, kind, name)).sought(kind, &name.text);
+    let mut problem = RULE.problem(name.span, message(context, kind, name)).undeclared(kind, &name.text);
     if ["and", "then", "or"].contains(&name.text.as_str()) {
         return problem
             .help("list the names one after another, with or without commas")
@@ -173,12 +173,12 @@ mod tests {
         check(
             "wheel a with radius 4\nsensor left\nrobot r with port 1 has { a left } wheels",
             &expect![[r#"
-                error[syntax-error] 2:8 "left" `left` is a word of the language, so a sensor cannot be called that
+                error[syntax-error] 2:8 "left" `left` is a keyword, so a sensor cannot be called that
                   help: write `^left` to use it as a name, or choose another name
                   suggestion: rename it to `left_sensor` -> sensor left_sensor
                   fix: write `^left` -> sensor ^left
                 error[syntax-error] 3:29 "left" expected the name of a wheel, found `left`
-                  help: `left` is a word of the language; only a name can stand here
+                  help: `left` is a keyword; only a name can stand here
             "#]],
         );
     }
@@ -207,7 +207,7 @@ mod tests {
         check(
             "wheel a with radius 4\nweel b with radius 4\nrobot r with port 1 has { a b } wheels",
             &expect![[r#"
-                error[syntax-error] 2:1 "weel" `weel` is not a word of the language; did you mean `wheel`?
+                error[syntax-error] 2:1 "weel" `weel` is not a keyword; did you mean `wheel`?
                   fix: change to `wheel` -> wheel b with radius 4
             "#]],
         );

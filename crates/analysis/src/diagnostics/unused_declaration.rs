@@ -109,7 +109,7 @@ mod tests {
     const PARTS: &str = "wheel a with radius 4\nwheel b with radius 4\nrobot r with port 1 has { a b } wheels\nmovement m of r { turn left }\n";
 
     #[test]
-    fn what_nothing_uses_is_said() {
+    fn what_nothing_uses_is_reported() {
         check_whole(
             &format!(
                 "{PARTS}sensor s\n// a note\nip i 127.0.0.1\nenvironment e has {{ r }} robots with {{ m }} moves\nwheel c with radius 5"

@@ -48,7 +48,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     }
 }
 
-/// A list with a syntax error in or right around it says nothing about how many wheels were meant.
+/// A list with a syntax error in or right around it says nothing about how many wheels were intended.
 fn understood(context: &Context<'_>, list: &References) -> bool {
     let is_written = !list.names.is_empty() || context.errors.is_empty();
     is_written && !list.broken && !context.errors.iter().any(|error| list.span.touches(error.span.start))

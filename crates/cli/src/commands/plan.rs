@@ -9,7 +9,7 @@ use pydslrep_analysis::environment::Environment;
 use pydslrep_config::{Config, Edition};
 use pydslrep_kinematics::{ActionIndex, Leg, Place, Pose, RobotPath};
 use pydslrep_output::{Kind, check_outputs, write_output};
-use pydslrep_scene::{Collision, Scene, Thing, collisions, mjcf};
+use pydslrep_scene::{Collision, Scene, SceneObject, collisions, mjcf};
 use serde::Serialize;
 
 use crate::failure::Failure;
@@ -20,7 +20,7 @@ use crate::options::edition_parser;
 use crate::report::numbers::{fixed, heading};
 use crate::report::output;
 use crate::run::pictures::Pictures;
-use crate::run::planned::Planned;
+use crate::run::planned::PlannedEnvironment;
 use crate::run::reporter::Reporter;
 
 const HELP: Help = Help {
@@ -87,9 +87,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let prepared = program::prepare(&inputs, file, &ids);
     let planned = |environment: Environment| {
         let scene = inputs.scene(file, &environment)?;
-        Planned::new(environment, scene)
+        PlannedEnvironment::new(environment, scene)
     };
-    let plans: Vec<Planned> = prepared.environments.into_iter().map(planned).collect::<Result<_, _>>()?;
+    let plans: Vec<PlannedEnvironment> =
+        prepared.environments.into_iter().map(planned).collect::<Result<_, _>>()?;
     output::print(&if arguments.json { json(&plans)? } else { plans.iter().map(table).collect() })?;
     if let Some(planned) = plans.first() {
         planned.draw(&arguments.pictures, "planned path", &planned.routes())?;
@@ -111,12 +112,12 @@ const HEAD: [&str; 6] = ["action", "at s", "x m", "y m", "heading °", "wheels r
 const GAP: usize = 2;
 
 /// A narrower column is hard to read.
-const FEWEST_COLUMNS: usize = 16;
+const MIN_COLUMNS: usize = 16;
 
 /// Actions that begin within this many seconds of each other begin together.
 const AT_ONCE: f64 = 0.005;
 
-fn table(planned: &Planned) -> String {
+fn table(planned: &PlannedEnvironment) -> String {
     let duration = match planned.plan.duration {
         Some(seconds) => format!("{} s", fixed(seconds, 2)),
         None => "duration unknown until it runs: values marked ? depend on sensors".to_owned(),
@@ -132,8 +133,8 @@ fn table(planned: &Planned) -> String {
     let last = HEAD.len() - 1;
     let left = |others: usize| output::columns().saturating_sub(others + 1);
     // On a narrow terminal, wheel rates are below their action.
-    let is_narrow = left(others) < FEWEST_COLUMNS;
-    let columns = if is_narrow { left(others - width(last)) } else { left(others) }.max(FEWEST_COLUMNS);
+    let is_narrow = left(others) < MIN_COLUMNS;
+    let columns = if is_narrow { left(others - width(last)) } else { left(others) }.max(MIN_COLUMNS);
     let mut table = output::table(HEAD);
     table.set_content_arrangement(ContentArrangement::Disabled);
     for [what, at, x, y, heading, rates] in rows {
@@ -166,7 +167,7 @@ fn indented(text: &str, columns: usize) -> String {
 }
 
 /// The rows of a robot: its start, its movements, and the actions of each.
-fn rows(planned: &Planned, robot: &str, path: &RobotPath) -> Vec<Row> {
+fn rows(planned: &PlannedEnvironment, robot: &str, path: &RobotPath) -> Vec<Row> {
     let row = |what: String, at: String, pose: Pose, rates: String| {
         [what, at, fixed(pose.x, 3), fixed(pose.y, 3), heading(pose.theta), rates]
     };
@@ -202,7 +203,7 @@ fn rows(planned: &Planned, robot: &str, path: &RobotPath) -> Vec<Row> {
 }
 
 /// A collision in a sentence.
-fn meeting(planned: &Planned, collision: &Collision) -> String {
+fn meeting(planned: &PlannedEnvironment, collision: &Collision) -> String {
     let (movement, action) = planned.words(collision.action, &collision.place);
     let time = collision.time.map_or_else(String::new, |time| format!(" after {} s", fixed(time, 2)));
     let (x, y) = (fixed(collision.pose.x, 3), fixed(collision.pose.y, 3));
@@ -212,16 +213,16 @@ fn meeting(planned: &Planned, collision: &Collision) -> String {
     });
     format!(
         "{} runs into `{}`{doing}{time}: `{action}` of `{movement}`, at x {x} m, y {y} m",
-        thing(&planned.scene, Thing::Robot(collision.robot)),
-        thing(&planned.scene, collision.with),
+        object_name(&planned.scene, SceneObject::Robot(collision.robot)),
+        object_name(&planned.scene, collision.with),
     )
 }
 
 /// The name of an obstacle or a robot.
-fn thing(scene: &Scene, thing: Thing) -> &str {
-    match thing {
-        Thing::Obstacle(index) => scene.obstacles.get(index).map_or("", |obstacle| &obstacle.name),
-        Thing::Robot(index) => scene.robots.get(index).map_or("", |robot| &robot.name),
+fn object_name(scene: &Scene, object: SceneObject) -> &str {
+    match object {
+        SceneObject::Obstacle(index) => scene.obstacles.get(index).map_or("", |obstacle| &obstacle.name),
+        SceneObject::Robot(index) => scene.robots.get(index).map_or("", |robot| &robot.name),
     }
 }
 
@@ -248,13 +249,13 @@ struct JsonCollision<'a> {
     x: f64,
     y: f64,
     theta: f64,
-    with: JsonThing<'a>,
+    with: JsonCollisionTarget<'a>,
 }
 
-/// The other side of a collision.
+/// The obstacle or robot that a robot collides with.
 #[derive(Serialize)]
 #[serde(rename_all = "snake_case")]
-enum JsonThing<'a> {
+enum JsonCollisionTarget<'a> {
     Obstacle(&'a str),
     Robot(&'a str),
 }
@@ -313,13 +314,13 @@ struct JsonPose<'a> {
     theta: f64,
 }
 
-fn json(plans: &[Planned]) -> Result<String, Failure> {
+fn json(plans: &[PlannedEnvironment]) -> Result<String, Failure> {
     let plans: Vec<JsonPlan> = plans.iter().map(json_plan).collect();
     let text = serde_json::to_string_pretty(&plans);
     Ok(text.map_err(|error| Failure::new(format!("cannot write JSON: {error}")))? + "\n")
 }
 
-fn json_plan(planned: &Planned) -> JsonPlan<'_> {
+fn json_plan(planned: &PlannedEnvironment) -> JsonPlan<'_> {
     let robots = planned.environment.robots.iter().zip(&planned.plan.robots);
     let poses = |legs: &[Leg]| legs.iter().map(|leg| json_pose(planned, leg)).collect();
     let robots = robots.map(|(robot, path)| JsonRobot {
@@ -340,24 +341,24 @@ fn json_plan(planned: &Planned) -> JsonPlan<'_> {
     }
 }
 
-fn json_collision<'a>(planned: &'a Planned, collision: &Collision) -> JsonCollision<'a> {
-    let name = thing(&planned.scene, collision.with);
+fn json_collision<'a>(planned: &'a PlannedEnvironment, collision: &Collision) -> JsonCollision<'a> {
+    let name = object_name(&planned.scene, collision.with);
     let with = match collision.with {
-        Thing::Obstacle(_) => JsonThing::Obstacle(name),
-        Thing::Robot(_) => JsonThing::Robot(name),
+        SceneObject::Obstacle(_) => JsonCollisionTarget::Obstacle(name),
+        SceneObject::Robot(_) => JsonCollisionTarget::Robot(name),
     };
     let Pose { x, y, theta } = collision.pose;
     let action = json_action(planned, collision.action, &collision.place);
-    let robot = thing(&planned.scene, Thing::Robot(collision.robot));
+    let robot = object_name(&planned.scene, SceneObject::Robot(collision.robot));
     JsonCollision { robot, action, t: collision.time, x, y, theta, with }
 }
 
-fn json_pose<'a>(planned: &'a Planned, leg: &Leg) -> JsonPose<'a> {
+fn json_pose<'a>(planned: &'a PlannedEnvironment, leg: &Leg) -> JsonPose<'a> {
     let action = json_action(planned, leg.index, &leg.place);
     JsonPose { action, t: leg.end(), x: leg.to.x, y: leg.to.y, theta: leg.to.theta }
 }
 
-fn json_action<'a>(planned: &'a Planned, index: ActionIndex, place: &Place) -> JsonAction<'a> {
+fn json_action<'a>(planned: &'a PlannedEnvironment, index: ActionIndex, place: &Place) -> JsonAction<'a> {
     let before = planned.environment.schedule.iter().take(index.group).map(Vec::len).sum::<usize>();
     let found = planned.environment.place(index, place);
     let calls = found.iter().flat_map(|found| &found.calls);
@@ -386,7 +387,9 @@ mod tests {
         let file = database.open("x.pyr", program);
         let environment = database.environment(database.environments(file)[0].0).unwrap();
         let scene = scene(&environment);
-        let Ok(mut planned) = Planned::new(environment, scene) else { panic!("it can be planned") };
+        let Ok(mut planned) = PlannedEnvironment::new(environment, scene) else {
+            panic!("it can be planned")
+        };
         for truncated in [None, Some(Value::Bool(true))] {
             planned.plan.robots[0].truncated = truncated.is_some();
             let Ok(text) = json(std::slice::from_ref(&planned)) else { panic!("it can be written") };

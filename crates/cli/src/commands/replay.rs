@@ -21,7 +21,7 @@ use crate::report::output;
 use crate::run::driven::{self, Driven};
 use crate::run::outcome::Outcome;
 use crate::run::pictures::Pictures;
-use crate::run::planned::Planned;
+use crate::run::planned::PlannedEnvironment;
 use crate::run::record::Record;
 use crate::run::reporter::Reporter;
 use crate::run::trace_file;
@@ -95,7 +95,7 @@ fn compare(arguments: &Arguments, program: &Path) -> Result<ExitCode, Failure> {
         return Ok(ExitCode::FAILURE);
     };
     let scene = inputs.scene(file, &environment)?;
-    let mut planned = Planned::new(environment, scene)?;
+    let mut planned = PlannedEnvironment::new(environment, scene)?;
     let driven = driven(arguments, &planned)?;
     planned.start_from(&driven)?;
     let outcome = Outcome { planned: &planned, driven: &driven, wall: None, is_complete: true };
@@ -106,7 +106,7 @@ fn compare(arguments: &Arguments, program: &Path) -> Result<ExitCode, Failure> {
 }
 
 /// Returns the paths that the robots of a program drove, from a record.
-fn driven(arguments: &Arguments, planned: &Planned) -> Result<Driven, Failure> {
+fn driven(arguments: &Arguments, planned: &PlannedEnvironment) -> Result<Driven, Failure> {
     let record = read(arguments)?;
     let recorded = record.robots();
     let mut topics: Vec<RobotTopics> = planned.scene.robots.iter().map(trace_file::topics).collect();

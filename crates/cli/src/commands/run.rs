@@ -26,7 +26,7 @@ use crate::run::mujoco::World;
 use crate::run::outcome::Outcome;
 use crate::run::own_robots::{self, OwnRobot};
 use crate::run::pictures::Pictures;
-use crate::run::planned::Planned;
+use crate::run::planned::PlannedEnvironment;
 use crate::run::progress::Progress;
 use crate::run::python::{self, Packages, Watcher};
 use crate::run::reporter::{self, Reporter, is_standard_output};
@@ -204,7 +204,7 @@ fn perform(arguments: &Arguments, reporter: &mut Reporter) -> Result<ExitCode, F
     if target == Target::Ros2 {
         simulated.clear();
     }
-    let planned = Planned::new(environment, scene)?;
+    let planned = PlannedEnvironment::new(environment, scene)?;
     let run = Run { arguments, reporter, target, home, simulated, map, planned };
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let code = runtime.map_err(|error| unstarted(&error))?.block_on(run.drive(&name, &text))?;
@@ -270,7 +270,7 @@ struct Run<'a> {
     simulated: Vec<usize>,
     /// The destination of the map, if a robot explores.
     map: Option<PathBuf>,
-    planned: Planned,
+    planned: PlannedEnvironment,
 }
 
 impl Run<'_> {

@@ -96,7 +96,7 @@ pub(crate) fn prepare(inputs: &Inputs, file: FileId, ids: &[EntityId]) -> Prepar
 /// an error, whatever its severity is set to.
 fn problems(inputs: &Inputs, file: FileId, errors: &[Diagnostic]) -> Vec<Diagnostic> {
     let severities = inputs.settings(file).severities;
-    let blocking: HashSet<Place<'_>> = errors.iter().map(place).collect();
+    let blocking: HashSet<ProblemKey<'_>> = errors.iter().map(place).collect();
     let as_shown = |problem: Diagnostic| {
         if blocking.contains(&place(&problem)) {
             return Some(problem);
@@ -111,9 +111,9 @@ fn problems(inputs: &Inputs, file: FileId, errors: &[Diagnostic]) -> Vec<Diagnos
 }
 
 /// The identity of a problem.
-type Place<'a> = (FileId, u32, u32, &'static str, &'a str);
+type ProblemKey<'a> = (FileId, u32, u32, &'static str, &'a str);
 
-fn place(problem: &Diagnostic) -> Place<'_> {
+fn place(problem: &Diagnostic) -> ProblemKey<'_> {
     let Diagnostic { file, span, message, .. } = problem;
     (*file, span.start, span.end, problem.code(), message)
 }
@@ -121,7 +121,7 @@ fn place(problem: &Diagnostic) -> Place<'_> {
 /// Adds those that are not there yet.
 fn add<'a>(problems: &mut Vec<Diagnostic>, more: impl IntoIterator<Item = &'a Diagnostic>) {
     let missing: Vec<Diagnostic> = {
-        let mut known: HashSet<Place<'_>> = problems.iter().map(place).collect();
+        let mut known: HashSet<ProblemKey<'_>> = problems.iter().map(place).collect();
         more.into_iter().filter(|problem| known.insert(place(problem))).cloned().collect()
     };
     problems.extend(missing);

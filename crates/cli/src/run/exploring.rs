@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use pydslrep_analysis::environment::{ActionKind, Environment, nested};
+use pydslrep_analysis::environment::{Environment, ResolvedActionKind, nested};
 use pydslrep_scene::Scene;
 use pydslrep_trace::{Map, MapFile};
 
@@ -13,7 +13,7 @@ use crate::failure::Failure;
 /// Returns whether a movement of the environment explores.
 pub(crate) fn explores(environment: &Environment) -> bool {
     let actions = environment.movements.iter().flat_map(|movement| nested(&movement.actions));
-    actions.into_iter().any(|action| action.kind == ActionKind::Slam)
+    actions.into_iter().any(|action| action.kind == ResolvedActionKind::Slam)
 }
 
 /// The file for an environment's map: the one that was asked for, or one of the environment's name.

@@ -11,11 +11,11 @@ use serde::Serialize;
 use crate::report::numbers::{fixed, heading};
 use crate::report::output;
 use crate::run::driven::Driven;
-use crate::run::planned::Planned;
+use crate::run::planned::PlannedEnvironment;
 
 /// A run that has ended.
 pub(crate) struct Outcome<'a> {
-    pub(crate) planned: &'a Planned,
+    pub(crate) planned: &'a PlannedEnvironment,
     pub(crate) driven: &'a Driven,
     /// Wall time from the start of the script to its end; `None` for a run that was recorded some time.
     pub(crate) wall: Option<Duration>,

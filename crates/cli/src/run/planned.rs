@@ -14,13 +14,13 @@ use crate::run::pictures::Pictures;
 const POINTS_PER_LEG: u32 = 24;
 
 /// An environment with its plan.
-pub(crate) struct Planned {
+pub(crate) struct PlannedEnvironment {
     pub(crate) environment: Environment,
     pub(crate) scene: Scene,
     pub(crate) plan: Plan,
 }
 
-impl Planned {
+impl PlannedEnvironment {
     /// Plans an environment in a scene.
     ///
     /// # Errors

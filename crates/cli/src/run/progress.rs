@@ -6,12 +6,12 @@ use std::time::Duration;
 
 use indicatif::{MultiProgress, ProgressBar, ProgressState, ProgressStyle};
 
-use pydslrep_analysis::environment::{Action, ActionKind};
+use pydslrep_analysis::environment::{ResolvedAction, ResolvedActionKind};
 use pydslrep_trace::Moment;
 
 use crate::report::numbers::fixed;
 use crate::report::output;
-use crate::run::planned::Planned;
+use crate::run::planned::PlannedEnvironment;
 
 /// At most this many robots are shown one by one.
 const MAX_ROBOTS: usize = 12;
@@ -54,7 +54,7 @@ impl Task {
 
 impl Progress {
     /// Shows the run of a plan; with `quiet`, nothing.
-    pub(crate) fn new(planned: &Planned, quiet: bool) -> Self {
+    pub(crate) fn new(planned: &PlannedEnvironment, quiet: bool) -> Self {
         let bars = MultiProgress::new();
         if quiet {
             bars.set_draw_target(indicatif::ProgressDrawTarget::hidden());
@@ -139,7 +139,7 @@ impl Tasks {
     }
 }
 
-fn tasks(planned: &Planned) -> Vec<Tasks> {
+fn tasks(planned: &PlannedEnvironment) -> Vec<Tasks> {
     let environment = &planned.environment;
     let mut all: Vec<Tasks> = environment
         .robots
@@ -164,9 +164,9 @@ fn tasks(planned: &Planned) -> Vec<Tasks> {
 }
 
 /// The largest number of the statements in an action.
-fn last_number(action: &Action) -> usize {
+fn last_number(action: &ResolvedAction) -> usize {
     let branches = match &action.kind {
-        ActionKind::If { branches, .. } => branches.last().map_or(0, |branch| branch.number),
+        ResolvedActionKind::If { branches, .. } => branches.last().map_or(0, |branch| branch.number),
         _ => 0,
     };
     let inside = action.blocks().into_iter().filter_map(|block| block.last()).map(last_number);

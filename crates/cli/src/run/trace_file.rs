@@ -8,7 +8,7 @@ use pydslrep_scene::{Robot, Sensor, SensorKind};
 use pydslrep_trace::{TraceRecord, lines};
 
 use crate::failure::Failure;
-use crate::run::planned::Planned;
+use crate::run::planned::PlannedEnvironment;
 
 /// The name of planned paths among the topics of a robot, as Nav2 has it.
 const PLAN: &str = "plan";
@@ -51,7 +51,7 @@ impl TraceFile {
     }
 
     /// Has planned paths written in front of the records of their robots, where the trace can have them.
-    pub(crate) fn plan(&mut self, planned: &Planned) {
+    pub(crate) fn plan(&mut self, planned: &PlannedEnvironment) {
         if let Content::Bag(bag) = &mut self.content {
             for route in planned.routes() {
                 bag.plan(&route.name, route.planned);

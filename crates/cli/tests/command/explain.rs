@@ -73,14 +73,14 @@ fn unknown_codes_get_a_suggestion() {
          = help: did you mean `invalid-radius`?
     "#]]
     .assert_eq(&done.err);
-    for (word, meant) in [
+    for (word, expected) in [
         ("unused", "did you mean `unused-declaration`?"),
         ("unused-variable", "did you mean `unused-declaration`?"),
         ("Port", "did you mean `invalid-port`, `port-of-other-target` or `duplicate-port`?"),
     ] {
         let done = Place::new().run(&["explain", word]);
         assert_eq!(done.code, Some(2), "{word}");
-        assert!(done.err.contains(meant), "{}", done.err);
+        assert!(done.err.contains(expected), "{}", done.err);
     }
     let done = Place::new().run(&["explain", "E0308"]);
     assert_eq!(done.code, Some(2));

@@ -243,8 +243,8 @@ fn a_script_says_at_once_why_it_waits() {
     let failed = failed(FailureClass::Simulator, "no reply");
     let place = place(&format!("{note}; {warning}; {failed}; exit 2"));
     let done: Done = command(&place).arg("--no-progress").output().unwrap().into();
-    let said = "note: it waits\nwarning: it is old\nerror: no reply\n";
-    assert_eq!((done.code, done.err.as_str()), (Some(2), said));
+    let printed = "note: it waits\nwarning: it is old\nerror: no reply\n";
+    assert_eq!((done.code, done.err.as_str()), (Some(2), printed));
 }
 
 #[test]

@@ -16,12 +16,12 @@ fn a_program_in_place_of_a_command_is_most_likely_to_be_run() {
          = help: did you mean `pydslrep run x.pyr`?
     "#]]
     .assert_eq(&done.err);
-    for (word, meant) in
+    for (word, expected) in
         [("gone.pyr", "run gone.pyr"), ("rooms", "check rooms"), ("rooms/y.pyr", "run rooms/y.pyr")]
     {
         let done = place.run(&[word]);
         assert_eq!(done.code, Some(2), "{word}");
-        assert!(done.err.contains(&format!("did you mean `pydslrep {meant}`?")), "{}", done.err);
+        assert!(done.err.contains(&format!("did you mean `pydslrep {expected}`?")), "{}", done.err);
     }
     let done = place.run(&["chekc"]);
     assert_eq!(done.code, Some(2));

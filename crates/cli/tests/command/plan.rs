@@ -213,12 +213,21 @@ fn what_is_in_the_way_is_told() {
     assert!(checked.out.contains(warning), "{}", checked.out);
     let json = place.run(&["plan", "--json", "x.pyr"]);
     let plans: Value = serde_json::from_str(&json.out).unwrap();
-    let met = &plans[0]["collisions"];
-    assert_eq!(met.as_array().unwrap().len(), 3, "{met}");
-    assert_eq!((&met[0]["robot"], &met[0]["with"]), (&json!("first"), &json!({"obstacle": "crate"})));
-    assert_eq!((&met[0]["movement"], &met[0]["run"], &met[0]["action"]), (&json!("m"), &json!(1), &json!(1)));
-    assert!((met[0]["x"].as_f64().unwrap() - 0.449).abs() < 0.002, "{met}");
-    assert_eq!((&met[1]["robot"], &met[1]["with"]), (&json!("second"), &json!({"robot": "first"})));
+    let collisions = &plans[0]["collisions"];
+    assert_eq!(collisions.as_array().unwrap().len(), 3, "{collisions}");
+    assert_eq!(
+        (&collisions[0]["robot"], &collisions[0]["with"]),
+        (&json!("first"), &json!({"obstacle": "crate"}))
+    );
+    assert_eq!(
+        (&collisions[0]["movement"], &collisions[0]["run"], &collisions[0]["action"]),
+        (&json!("m"), &json!(1), &json!(1))
+    );
+    assert!((collisions[0]["x"].as_f64().unwrap() - 0.449).abs() < 0.002, "{collisions}");
+    assert_eq!(
+        (&collisions[1]["robot"], &collisions[1]["with"]),
+        (&json!("second"), &json!({"robot": "first"}))
+    );
 }
 
 #[test]

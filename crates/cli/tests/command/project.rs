@@ -151,8 +151,11 @@ fn each_command_takes_an_edition() {
     for command in ["check", "build", "plan", "run"] {
         let done = place.run(&[command, "x.pyr", "--edition", "article"]);
         assert_eq!(done.code, Some(1), "{command} {}", done.err);
-        let said = done.out + &done.err;
-        assert!(said.contains("error[not-in-article]: the article does not have `wait`"), "{command} {said}");
+        let printed = done.out + &done.err;
+        assert!(
+            printed.contains("error[not-in-article]: the article does not have `wait`"),
+            "{command} {printed}"
+        );
         let done = place.run(&[command, "x.pyr", "--edition", "old"]);
         assert_eq!(done.code, Some(2), "{command}");
     }

@@ -164,8 +164,8 @@ fn options_that_contradict_each_other_are_refused() {
     for (options, reason) in refusals {
         let done = run(&Place::new(), &[&[program.as_str()], options].concat());
         assert_eq!(done.code, Some(2), "{options:?}: {}", done.out);
-        let said = done.err.split_whitespace().collect::<Vec<_>>().join(" ");
-        assert!(said.contains(reason), "{options:?}: {}", done.err);
+        let printed = done.err.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(printed.contains(reason), "{options:?}: {}", done.err);
     }
 }
 
@@ -223,14 +223,14 @@ fn a_robot_that_stands_still_and_is_struck_gets_a_warning() {
     let path = "[[0, 0, 3], [3, 0, 3], [5, 0, 1], [6, -3, 1]]";
     let done = run_with_person(path, &["--events", "-"]);
     assert_eq!(done.code, Some(0), "{}", done.err);
-    let said = "`person` ran into `guard` after 3.6 s, where it stood still at x 0.00 m, y 2.00 m";
+    let message = "`person` ran into `guard` after 3.6 s, where it stood still at x 0.00 m, y 2.00 m";
     let found = events(&done.out);
     let warning = |event: &&RunEvent| matches!(event, RunEvent::Warning { .. });
     let warnings: Vec<&RunEvent> = found.iter().filter(warning).collect();
     let [RunEvent::Warning { text, help: Some(help) }] = warnings[..] else { panic!("{found:?}") };
-    assert!(text == said && help.contains("`path` of `person`"), "{text} {help}");
+    assert!(text == message && help.contains("`path` of `person`"), "{text} {help}");
     let err = done.err.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(err.contains(said), "{}", done.err);
+    assert!(err.contains(message), "{}", done.err);
 }
 
 #[test]
@@ -294,8 +294,8 @@ fn events_tell_what_happens() {
     assert!((contact.x - 0.8).abs() < 0.01, "{contact:?}");
     assert_eq!((failure.class, failure.action), (FailureClass::Action, Some(1)));
     // The warning before is of the program, which is no event.
-    let said = format!("file.\nerror: {}\ntrace: t.jsonl\n", failure.message);
-    assert!(done.err.ends_with(&said), "{}", done.err);
+    let ending = format!("file.\nerror: {}\ntrace: t.jsonl\n", failure.message);
+    assert!(done.err.ends_with(&ending), "{}", done.err);
     assert_eq!((&figures["complete"], table), (&Value::Bool(false), &done.out));
 
     let done = run_with("-");

@@ -5,7 +5,7 @@ use pydslrep_syntax::TokenKind;
 use pydslrep_syntax::ast::{Direction, SensorState, Unit};
 
 use super::Completion;
-use super::context::CursorContext;
+use super::context::CompletionContext;
 use super::defaults::{Defaults, LastTurn};
 use super::names;
 use super::snippets::{Snippet, completions, tab_stop};
@@ -14,7 +14,7 @@ use super::snippets::{Snippet, completions, tab_stop};
 const BLOCK: &str = "{\n  $0\n}";
 
 /// Complete actions, those like the last action of their kind first.
-pub(super) fn actions(context: &CursorContext<'_>) -> Vec<Completion> {
+pub(super) fn actions(context: &CompletionContext<'_>) -> Vec<Completion> {
     let defaults = Defaults::for_part(context);
     let (moves, turns) = (moves(&defaults), turns(&defaults));
     // Moves and turns usually alternate.
@@ -71,7 +71,7 @@ fn choices(defaults: &Defaults<'_>) -> Vec<Snippet> {
 }
 
 /// The movement that is done, if there is one to do.
-fn calls(context: &CursorContext<'_>) -> Vec<Snippet> {
+fn calls(context: &CompletionContext<'_>) -> Vec<Snippet> {
     // To look at all movements takes time.
     if !"do".starts_with(&context.typed) {
         return Vec::new();
@@ -177,20 +177,20 @@ fn spelling(direction: Direction) -> &'static str {
 }
 
 /// The optional speed clause of a `move` or `turn`.
-pub(super) fn speed(context: &CursorContext<'_>) -> Vec<Completion> {
+pub(super) fn speed(context: &CompletionContext<'_>) -> Vec<Completion> {
     let insert = format!("at ${{1:{}}}", Defaults::for_part(context).speed());
     completions(context, vec![Snippet::new("at …", "a speed (cm/s)", insert)])
 }
 
 /// The circle of a `turn`.
-pub(super) fn circle(context: &CursorContext<'_>) -> Vec<Completion> {
+pub(super) fn circle(context: &CompletionContext<'_>) -> Vec<Completion> {
     let (radius, unit) = Defaults::for_part(context).last_radius();
     let insert = format!("with radius ${{1:{radius}}} {unit}");
     completions(context, vec![Snippet::new("with radius …", "on a circle", insert)])
 }
 
 /// Completions for the words that end an action or a `repeat`.
-pub(super) fn until(context: &CursorContext<'_>) -> Vec<Completion> {
+pub(super) fn until(context: &CompletionContext<'_>) -> Vec<Completion> {
     let defaults = Defaults::for_part(context);
     let snippet = |state| {
         let insert = format!("until {}", condition(&defaults, 1, state)?);
@@ -209,7 +209,7 @@ pub(super) fn until(context: &CursorContext<'_>) -> Vec<Completion> {
 }
 
 /// The rest of a `repeat`, if its block is not there yet.
-pub(super) fn rounds(context: &CursorContext<'_>) -> Vec<Completion> {
+pub(super) fn rounds(context: &CompletionContext<'_>) -> Vec<Completion> {
     if context.next_token() == Some(TokenKind::OpenBrace) {
         return Vec::new();
     }
@@ -217,7 +217,7 @@ pub(super) fn rounds(context: &CursorContext<'_>) -> Vec<Completion> {
 }
 
 /// Completions for the block that runs if the condition does not hold.
-pub(super) fn otherwise(context: &CursorContext<'_>) -> Vec<Completion> {
+pub(super) fn otherwise(context: &CompletionContext<'_>) -> Vec<Completion> {
     let snippet =
         Snippet::new("else { … }", "what is done if the condition does not hold", format!("else {BLOCK}"));
     completions(context, vec![snippet])

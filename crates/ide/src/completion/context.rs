@@ -9,7 +9,7 @@ use crate::FilePosition;
 use crate::statements::Statements;
 
 /// The entity before the cursor, as far as it is typed.
-pub(super) struct CursorContext<'a> {
+pub(super) struct CompletionContext<'a> {
     pub(super) database: &'a Database,
     pub(super) file: FileId,
     /// The entity that contains the cursor, if any.
@@ -38,7 +38,7 @@ pub(super) struct CursorContext<'a> {
     pub(super) is_escaped: bool,
 }
 
-impl<'a> CursorContext<'a> {
+impl<'a> CompletionContext<'a> {
     pub(super) fn find(database: &'a Database, position: FilePosition, speed: f64) -> Option<Self> {
         let word = word_at(database, position)?;
         // A typed word that equals a keyword is parsed as a new entity, but still continues the one before.

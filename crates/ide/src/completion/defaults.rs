@@ -10,7 +10,7 @@ use pydslrep_syntax::ast::{
 use pydslrep_syntax::{EntityKind, Span, TokenKind, escape};
 use smol_str::SmolStr;
 
-use super::context::CursorContext;
+use super::context::CompletionContext;
 use super::names::NEARBY_ENTITIES;
 
 /// The maximum number of names in a suggested list.
@@ -18,7 +18,7 @@ const MAX_LISTED: usize = 40;
 
 /// The declarations near the cursor.
 pub(super) struct Defaults<'a> {
-    context: &'a CursorContext<'a>,
+    context: &'a CompletionContext<'a>,
     /// In text order.
     near: Vec<Near<'a>>,
 }
@@ -55,16 +55,16 @@ pub(super) struct LastTurn {
 
 impl<'a> Defaults<'a> {
     /// For a new entity.
-    pub(super) fn for_entity(context: &'a CursorContext<'a>) -> Self {
+    pub(super) fn for_entity(context: &'a CompletionContext<'a>) -> Self {
         Self::around(context, None)
     }
 
     /// For a missing part of the entity at the cursor, which is not considered itself.
-    pub(super) fn for_part(context: &'a CursorContext<'a>) -> Self {
+    pub(super) fn for_part(context: &'a CompletionContext<'a>) -> Self {
         Self::around(context, context.entity)
     }
 
-    fn around(context: &'a CursorContext<'a>, own: Option<EntityId>) -> Self {
+    fn around(context: &'a CompletionContext<'a>, own: Option<EntityId>) -> Self {
         let around = context.database.entities_around(context.file, context.word.start, NEARBY_ENTITIES);
         let near = around.filter(|id| own != Some(*id)).filter_map(|id| {
             let entity = context.database.entity(id)?;
@@ -346,7 +346,7 @@ impl<'a> Defaults<'a> {
 }
 
 /// The robot of a movement, unless its parts are unknown.
-pub(super) fn robot_of<'a>(context: &CursorContext<'a>, movement: &Movement) -> Option<&'a Robot> {
+pub(super) fn robot_of<'a>(context: &CompletionContext<'a>, movement: &Movement) -> Option<&'a Robot> {
     let name = &movement.robot.as_ref()?.text;
     let id = context.database.resolve(context.file, EntityKind::Robot, name).entity()?;
     match context.database.tree(id)? {
@@ -403,7 +403,7 @@ fn left_first(names: Vec<SmolStr>) -> Vec<SmolStr> {
 }
 
 /// The likely content of a list of this kind in the entity at the cursor.
-pub(super) fn likely_list(context: &CursorContext<'_>, kind: EntityKind) -> String {
+pub(super) fn likely_list(context: &CompletionContext<'_>, kind: EntityKind) -> String {
     let defaults = Defaults::for_part(context);
     match (context.tree, kind) {
         (Some(Entity::Robot(_)), EntityKind::Wheel) => defaults.wheels().names.join(" "),

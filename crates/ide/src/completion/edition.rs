@@ -4,11 +4,11 @@ use pydslrep_analysis::Edition;
 use pydslrep_analysis::diagnostics::beyond_article;
 use pydslrep_syntax::{EntityKind, Expected, TokenKind, lex, parse};
 
-use super::context::CursorContext;
+use super::context::CompletionContext;
 use super::{Completion, CompletionKind};
 
 /// Drops the items for `expected` that the edition of the file does not have.
-pub(super) fn retain(context: &CursorContext<'_>, expected: Expected, items: &mut Vec<Completion>) {
+pub(super) fn retain(context: &CompletionContext<'_>, expected: Expected, items: &mut Vec<Completion>) {
     if context.database.edition(context.file) != Edition::Article {
         return;
     }
@@ -31,7 +31,7 @@ pub(super) fn retain(context: &CursorContext<'_>, expected: Expected, items: &mu
 }
 
 /// Returns the entity's text before the word at the cursor.
-fn written<'a>(context: &'a CursorContext<'_>) -> &'a str {
+fn written<'a>(context: &'a CompletionContext<'_>) -> &'a str {
     let end = context.before.last().map_or(0, |(_, span)| span.end);
     context.text.get(..end as usize).unwrap_or_default()
 }

@@ -5,14 +5,14 @@ use pydslrep_syntax::ast::{Drive, Entity};
 use pydslrep_syntax::{EntityKind, Expected, Span, TokenKind, expected_after};
 use smol_str::SmolStr;
 
-use super::context::CursorContext;
+use super::context::CompletionContext;
 use super::defaults::likely_list;
 use super::names::{MAX_RANKED, NEARBY_ENTITIES};
 use super::snippets::tab_stop;
 use super::{Completion, CompletionKind, Documentation, Rank};
 use crate::keyword_pages::{KeywordPage, keyword_page};
 
-impl CursorContext<'_> {
+impl CompletionContext<'_> {
     /// An item that replaces the word at the cursor.
     pub(super) fn item(&self, label: &str, kind: CompletionKind, rank: Rank) -> Completion {
         Completion {
@@ -25,7 +25,7 @@ impl CursorContext<'_> {
 }
 
 /// A keyword with the ones that must follow it; `None` for the comma, which is always optional.
-pub(super) fn keyword(context: &CursorContext<'_>, word: TokenKind) -> Option<Completion> {
+pub(super) fn keyword(context: &CompletionContext<'_>, word: TokenKind) -> Option<Completion> {
     let spelling = word.spelling().filter(|_| word != TokenKind::Comma)?;
     let Continuation { insert, label, last } = continuation(context, word);
     let label = if word == TokenKind::OpenBrace { &label } else { label.trim_end_matches(" …") };
@@ -60,7 +60,7 @@ fn detail(word: TokenKind, page: &KeywordPage) -> String {
 }
 
 /// Returns whether a keyword is the drive type that the robot's wheels imply.
-fn matches_wheels(context: &CursorContext<'_>, word: TokenKind) -> bool {
+fn matches_wheels(context: &CompletionContext<'_>, word: TokenKind) -> bool {
     let (Some(drive), Some(Entity::Robot(robot))) = (word.drive(), context.tree) else { return false };
     let names = robot.wheels.iter().flat_map(|list| &list.names);
     let mecanum: Vec<bool> = names.filter_map(|name| is_mecanum(context, &name.text)).collect();
@@ -68,7 +68,7 @@ fn matches_wheels(context: &CursorContext<'_>, word: TokenKind) -> bool {
 }
 
 /// Returns whether the wheel of this name is a mecanum wheel; `None` if there is no such wheel.
-pub(super) fn is_mecanum(context: &CursorContext<'_>, name: &SmolStr) -> Option<bool> {
+pub(super) fn is_mecanum(context: &CompletionContext<'_>, name: &SmolStr) -> Option<bool> {
     let id = context.database.resolve(context.file, EntityKind::Wheel, name).entity()?;
     match context.database.tree(id)? {
         Entity::Wheel(wheel) => Some(wheel.mecanum),
@@ -94,13 +94,13 @@ impl Continuation {
 
 /// `with` continues to `with port`, `has` to `has { … } wheels`, as long as only one keyword can follow and nothing is
 /// there yet.
-fn continuation(context: &CursorContext<'_>, word: TokenKind) -> Continuation {
+fn continuation(context: &CompletionContext<'_>, word: TokenKind) -> Continuation {
     const MAX_KEYWORDS: usize = 6;
     let mut before = context.before.clone();
     let spelling = word.spelling().unwrap_or_default().to_owned();
     let mut continued = Continuation { insert: spelling.clone(), label: spelling, last: word };
-    let most = if context.at_end { MAX_KEYWORDS } else { usize::from(leads_on(context, word)) };
-    for _ in 0..most {
+    let max_count = if context.at_end { MAX_KEYWORDS } else { usize::from(leads_on(context, word)) };
+    for _ in 0..max_count {
         let end = Span::at(before.last().map_or(0, |(_, span)| span.end));
         before.push((continued.last, end));
         let mut expected = expected_after(&context.text, &before);
@@ -125,7 +125,7 @@ fn continuation(context: &CursorContext<'_>, word: TokenKind) -> Continuation {
 }
 
 /// Returns whether a keyword of a statement inserts the next one as well, although more of the movement follows.
-fn leads_on(context: &CursorContext<'_>, word: TokenKind) -> bool {
+fn leads_on(context: &CompletionContext<'_>, word: TokenKind) -> bool {
     let next = match word {
         TokenKind::With => TokenKind::Radius,
         TokenKind::In => TokenKind::Reverse,
@@ -144,7 +144,7 @@ fn listed_kind(last: TokenKind, expected: &[Expected]) -> Option<EntityKind> {
 }
 
 /// Keywords without continuation.
-pub(super) fn plain_keywords(context: &CursorContext<'_>, words: &[TokenKind]) -> Vec<Completion> {
+pub(super) fn plain_keywords(context: &CompletionContext<'_>, words: &[TokenKind]) -> Vec<Completion> {
     let word = |word: &TokenKind| {
         let page = keyword_page(*word)?;
         Some(Completion {
@@ -157,13 +157,13 @@ pub(super) fn plain_keywords(context: &CursorContext<'_>, words: &[TokenKind]) -
 }
 
 /// A number or an address.
-pub(super) fn value(context: &CursorContext<'_>, text: &str, detail: &str) -> Completion {
+pub(super) fn value(context: &CompletionContext<'_>, text: &str, detail: &str) -> Completion {
     Completion { detail: detail.to_owned(), ..context.item(text, CompletionKind::Value, Rank::Fitting) }
 }
 
 /// A port for the robot `own`, or for a new one: the port that all others share, as they may in CoppeliaSim; otherwise
 /// the one after the highest, or the first free one.
-pub(super) fn port(context: &CursorContext<'_>, own: Option<EntityId>) -> Option<String> {
+pub(super) fn port(context: &CompletionContext<'_>, own: Option<EntityId>) -> Option<String> {
     let target = context.database.target(context.file);
     let port = |id: EntityId| match context.database.tree(id)? {
         Entity::Robot(robot) if Some(id) != own => robot.port.as_ref()?.value,

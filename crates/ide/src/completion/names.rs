@@ -12,7 +12,7 @@ use pydslrep_syntax::{EntityKind, TextEdit, escape};
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 
-use super::context::CursorContext;
+use super::context::CompletionContext;
 use super::defaults::robot_of;
 use super::filter::starts_with;
 use super::keywords::is_mecanum;
@@ -28,7 +28,7 @@ pub(super) const NEARBY_ENTITIES: usize = 200;
 const MAX_UNIMPORTED: usize = 50;
 
 /// The names of a kind that fit at the cursor.
-pub(super) fn names(context: &CursorContext<'_>, kind: EntityKind) -> Vec<Completion> {
+pub(super) fn names(context: &CompletionContext<'_>, kind: EntityKind) -> Vec<Completion> {
     let wanted = Wanted::at(context, kind);
     let chosen = wanted.only(context).unwrap_or_else(|| visible(context, &wanted));
     let mut found: Vec<Completion> =
@@ -62,7 +62,7 @@ enum For<'a> {
 }
 
 impl<'a> Wanted<'a> {
-    fn at(context: &CursorContext<'a>, kind: EntityKind) -> Self {
+    fn at(context: &CompletionContext<'a>, kind: EntityKind) -> Self {
         let listed = context.listed();
         let for_ = match (context.tree, kind) {
             (Some(Entity::Robot(robot)), EntityKind::Wheel) => wheels_of(context, robot, &listed),
@@ -83,7 +83,7 @@ impl<'a> Wanted<'a> {
     }
 
     /// The only possible names, if a few entities determine them.
-    fn only(&self, context: &CursorContext<'_>) -> Option<Vec<SmolStr>> {
+    fn only(&self, context: &CompletionContext<'_>) -> Option<Vec<SmolStr>> {
         let seen =
             |name: &&SmolStr| context.database.resolve(context.file, self.kind, name).entity().is_some();
         match &self.for_ {
@@ -102,7 +102,7 @@ impl<'a> Wanted<'a> {
     }
 
     /// The visible movements of these robots, first those not listed yet.
-    fn movements_of(&self, context: &CursorContext<'_>, robots: &[EntityId]) -> Vec<SmolStr> {
+    fn movements_of(&self, context: &CompletionContext<'_>, robots: &[EntityId]) -> Vec<SmolStr> {
         let files: Vec<FileId> =
             std::iter::once(context.file).chain(context.database.imported_files(context.file)).collect();
         let mut names: Vec<(bool, SmolStr)> = Vec::new();
@@ -142,7 +142,7 @@ impl<'a> Wanted<'a> {
 
     /// Returns the rank of an entity, lowest first: wheels of another radius, names in use and imported names come
     /// later.
-    fn cost(&self, context: &CursorContext<'_>, name: &SmolStr, id: EntityId) -> u8 {
+    fn cost(&self, context: &CompletionContext<'_>, name: &SmolStr, id: EntityId) -> u8 {
         let tree = context.database.tree(id);
         let other_radius = match (&self.for_, tree) {
             (For::Robot(_, Some(wanted)), Some(Entity::Wheel(wheel))) => {
@@ -168,7 +168,7 @@ impl<'a> Wanted<'a> {
 
 /// The movements that the movement at the cursor can do: visible ones of the same robot that do not do it in turn, those
 /// that nothing does first.
-pub(super) fn to_do(context: &CursorContext<'_>) -> Vec<SmolStr> {
+pub(super) fn to_do(context: &CompletionContext<'_>) -> Vec<SmolStr> {
     let robot = context.movement().and_then(|movement| movement.robot.as_ref());
     let robot = robot
         .and_then(|robot| context.database.resolve(context.file, EntityKind::Robot, &robot.text).entity());
@@ -216,7 +216,7 @@ fn doing(database: &Database, own: EntityId, others: impl Iterator<Item = Entity
 }
 
 /// All wheels of a robot are of one kind: that of the listed ones, or that of its type.
-fn wheels_of<'a>(context: &CursorContext<'a>, robot: &Robot, listed: &[SmolStr]) -> For<'a> {
+fn wheels_of<'a>(context: &CompletionContext<'a>, robot: &Robot, listed: &[SmolStr]) -> For<'a> {
     let first = listed.iter().find_map(|name| Some((name, is_mecanum(context, name)?)));
     let radius = first.and_then(|(name, _)| {
         let id = context.database.resolve(context.file, EntityKind::Wheel, name).entity()?;
@@ -232,7 +232,7 @@ fn wheels_of<'a>(context: &CursorContext<'a>, robot: &Robot, listed: &[SmolStr])
 }
 
 /// The best visible names of a kind.
-fn visible(context: &CursorContext<'_>, wanted: &Wanted<'_>) -> Vec<SmolStr> {
+fn visible(context: &CompletionContext<'_>, wanted: &Wanted<'_>) -> Vec<SmolStr> {
     let mut all: Vec<&SmolStr> = context
         .database
         .names_in_sight(context.file, wanted.kind)
@@ -275,7 +275,7 @@ fn visible(context: &CursorContext<'_>, wanted: &Wanted<'_>) -> Vec<SmolStr> {
 }
 
 /// Sorts the name that is typed already first, and names with the typed prefix before those that only contain the letters.
-fn order(context: &CursorContext<'_>, name: &str) -> (bool, bool) {
+fn order(context: &CompletionContext<'_>, name: &str) -> (bool, bool) {
     (name != context.written, !starts_with(name, &context.typed))
 }
 
@@ -287,13 +287,13 @@ fn is_subsequence(typed: &str, name: &str) -> bool {
 }
 
 /// The names of a kind declared near the cursor.
-fn near<'a>(context: &CursorContext<'a>, kind: EntityKind) -> FxHashSet<&'a SmolStr> {
+fn near<'a>(context: &CompletionContext<'a>, kind: EntityKind) -> FxHashSet<&'a SmolStr> {
     let around = context.database.entities_around(context.file, context.word.start, NEARBY_ENTITIES);
     let trees = around.filter_map(|id| context.database.tree(id));
     trees.filter(|tree| tree.kind() == Some(kind)).filter_map(|tree| Some(&tree.name()?.text)).collect()
 }
 
-fn reference(context: &CursorContext<'_>, kind: EntityKind, name: &SmolStr) -> Option<Completion> {
+fn reference(context: &CompletionContext<'_>, kind: EntityKind, name: &SmolStr) -> Option<Completion> {
     let id = context.database.resolve(context.file, kind, name).entity()?;
     let home = context.database.file_of(id)?;
     let detail = match context.database.path_for_import(context.file, home) {
@@ -309,7 +309,7 @@ fn reference(context: &CursorContext<'_>, kind: EntityKind, name: &SmolStr) -> O
 }
 
 /// Returns whether a visible name begins with the typed letters: then no others are offered.
-fn begins_a_name(context: &CursorContext<'_>, wanted: &Wanted<'_>) -> bool {
+fn begins_a_name(context: &CompletionContext<'_>, wanted: &Wanted<'_>) -> bool {
     let may_stand_here = |name: &&SmolStr| {
         let seen = context.database.resolve(context.file, wanted.kind, name).entity();
         wanted.is_taken(name) || seen.is_some_and(|id| wanted.fits(context.database, id))
@@ -319,7 +319,7 @@ fn begins_a_name(context: &CursorContext<'_>, wanted: &Wanted<'_>) -> bool {
 }
 
 /// Names from files that are not imported yet, each with the edit that imports its file.
-fn unimported(context: &CursorContext<'_>, wanted: &Wanted<'_>) -> Vec<Completion> {
+fn unimported(context: &CompletionContext<'_>, wanted: &Wanted<'_>) -> Vec<Completion> {
     let mut items = Vec::new();
     for (path, file) in paths::not_imported(context.database, context.file) {
         let names =

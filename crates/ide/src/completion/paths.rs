@@ -3,7 +3,7 @@
 use pydslrep_analysis::{Database, FileId};
 use pydslrep_syntax::{Span, Token, TokenKind};
 
-use super::context::CursorContext;
+use super::context::CompletionContext;
 use super::{Completion, CompletionKind};
 use crate::FilePosition;
 use crate::document_links::summary;
@@ -50,7 +50,7 @@ pub(super) fn paths(database: &Database, file: FileId, at: &PathAt) -> Vec<Compl
 }
 
 /// The paths with quotes, for an import without a string.
-pub(super) fn quoted_paths(context: &CursorContext<'_>) -> Vec<Completion> {
+pub(super) fn quoted_paths(context: &CompletionContext<'_>) -> Vec<Completion> {
     importable(context.database, context.file, "")
         .into_iter()
         .map(|(path, imported)| {

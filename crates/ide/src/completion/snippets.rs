@@ -3,7 +3,7 @@
 
 use pydslrep_syntax::EntityKind;
 
-use super::context::CursorContext;
+use super::context::CompletionContext;
 use super::defaults::Defaults;
 use super::keywords::port;
 use super::{Completion, CompletionKind, Documentation, Rank};
@@ -22,7 +22,7 @@ impl Snippet {
 }
 
 /// Complete entities in the order of the grammar; the kind of wheel declared last comes first.
-pub(super) fn entities(context: &CursorContext<'_>) -> Vec<Completion> {
+pub(super) fn entities(context: &CompletionContext<'_>) -> Vec<Completion> {
     let defaults = Defaults::for_entity(context);
     let mut snippets = Vec::new();
     if context.database.entities(context.file).all(|entity| entity.parse.entity.is_none()) {
@@ -54,7 +54,7 @@ pub(super) fn entities(context: &CursorContext<'_>) -> Vec<Completion> {
 }
 
 /// A complete program for an empty file.
-fn program(context: &CursorContext<'_>) -> Snippet {
+fn program(context: &CompletionContext<'_>) -> Snippet {
     let port = context.database.target(context.file).default_port();
     let insert = format!(
         "wheel wheelL with radius ${{4:4.5}}\n\
@@ -84,7 +84,7 @@ fn wheel(defaults: &Defaults<'_>, mecanum: bool) -> Snippet {
 }
 
 /// The wheels are the first placeholder after the name, because type and port rarely change.
-fn robot(context: &CursorContext<'_>, defaults: &Defaults<'_>) -> Snippet {
+fn robot(context: &CompletionContext<'_>, defaults: &Defaults<'_>) -> Snippet {
     let layout = defaults.wheels();
     let sensors = defaults.sensors();
     let sensors = if sensors.is_empty() {
@@ -139,7 +139,7 @@ pub(super) fn tab_stop(number: u32, default: &str) -> String {
 }
 
 /// The items of snippets.
-pub(super) fn completions(context: &CursorContext<'_>, snippets: Vec<Snippet>) -> Vec<Completion> {
+pub(super) fn completions(context: &CompletionContext<'_>, snippets: Vec<Snippet>) -> Vec<Completion> {
     let completion = |snippet: Snippet| Completion {
         detail: snippet.detail.to_owned(),
         documentation: Documentation::Text(format!(

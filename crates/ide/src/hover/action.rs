@@ -1,6 +1,6 @@
 //! An action: how long it takes, where it leads, and what its rounds, its circle or the movement that it does come to.
 
-use pydslrep_analysis::environment::{Action, ActionKind, Movement, Robot};
+use pydslrep_analysis::environment::{Movement, ResolvedAction, ResolvedActionKind, Robot};
 use pydslrep_analysis::{Database, Driver, EntityId};
 use pydslrep_kinematics::{Leg, Pose};
 
@@ -25,18 +25,18 @@ pub(super) fn action(database: &Database, id: EntityId, index: usize, number: us
 
 /// An action in its place.
 struct Statement<'a> {
-    action: &'a Action,
+    action: &'a ResolvedAction,
     /// Its start pose; the action that makes it unknown.
-    start: Result<Pose, &'a Action>,
+    start: Result<Pose, &'a ResolvedAction>,
     within: Within,
 }
 
 /// The statement with a number among some actions and those in their blocks, of which the first starts at a pose.
 fn find<'a>(
     driver: &Driver,
-    actions: &'a [Action],
+    actions: &'a [ResolvedAction],
     number: usize,
-    mut start: Result<Pose, &'a Action>,
+    mut start: Result<Pose, &'a ResolvedAction>,
     within: Within,
 ) -> Option<Statement<'a>> {
     let begun = actions.partition_point(|action| action.number <= number).checked_sub(1)?;
@@ -49,16 +49,16 @@ fn find<'a>(
         return Some(Statement { action, start, within });
     }
     let within = match action.kind {
-        ActionKind::Repeat { .. } => within.rounds(),
-        ActionKind::RepeatUntil { .. } => within.rounds().condition(),
+        ResolvedActionKind::Repeat { .. } => within.rounds(),
+        ResolvedActionKind::RepeatUntil { .. } => within.rounds().condition(),
         _ => within.condition(),
     };
     action.blocks().into_iter().find_map(|block| find(driver, block, number, start, within))
 }
 
 /// Returns the action that makes the end of an action unknown: in rounds, the first such action.
-fn cause<'a>(driver: &Driver, action: &'a Action) -> &'a Action {
-    let ActionKind::Repeat { body, .. } = &action.kind else { return action };
+fn cause<'a>(driver: &Driver, action: &'a ResolvedAction) -> &'a ResolvedAction {
+    let ResolvedActionKind::Repeat { body, .. } = &action.kind else { return action };
     let inner = body.iter().find(|inner| driver.drive(Pose::default(), &inner.kind).is_none());
     inner.map_or(action, |inner| cause(driver, inner))
 }
@@ -75,7 +75,7 @@ impl Details<'_> {
         let &Statement { action, start, within } = statement;
         let leg = self.driver.drive(start.unwrap_or_default(), &action.kind);
         let unknown_start =
-            |cause: &Action| format!("The start pose cannot be planned: {}.", open_end(cause));
+            |cause: &ResolvedAction| format!("The start pose cannot be planned: {}.", open_end(cause));
         let poses = match (&leg, start) {
             (Some(leg), Ok(_)) => format!("{} {}", within.opening(), way_of(leg)),
             (None, Ok(_)) => format!("The end pose cannot be planned: {}.", open_end(action)),
@@ -91,19 +91,19 @@ impl Details<'_> {
     }
 
     /// Returns the details that only some kinds of actions have.
-    fn more(&self, action: &Action, leg: Option<&Leg>, start: Option<Pose>) -> Option<String> {
+    fn more(&self, action: &ResolvedAction, leg: Option<&Leg>, start: Option<Pose>) -> Option<String> {
         match &action.kind {
-            ActionKind::Repeat { count, body } => Some(self.rounds(*count, body)),
-            ActionKind::RepeatUntil { body, .. } => {
+            ResolvedActionKind::Repeat { count, body } => Some(self.rounds(*count, body)),
+            ResolvedActionKind::RepeatUntil { body, .. } => {
                 let times =
                     self.time_of(body).map_or_else(String::new, |seconds| format!(" in {}", time(seconds)));
                 Some(format!("A round drives {}{times}.", self.way_of(body)))
             }
-            ActionKind::Do { movement } => {
+            ResolvedActionKind::Do { movement } => {
                 let done = self.done.get(..=*movement)?;
                 Some(format!("`{}` {}", done.last()?.name, facts(self.robot, done)?))
             }
-            ActionKind::Turn { circle: Some(_), .. } => {
+            ResolvedActionKind::Turn { circle: Some(_), .. } => {
                 Some(Arc::new(self.robot, self.driver.model(), &action.kind)?.describe(leg, start))
             }
             _ => None,
@@ -111,7 +111,7 @@ impl Details<'_> {
     }
 
     /// Describes the rounds of a block and their total.
-    fn rounds(&self, count: u32, body: &[Action]) -> String {
+    fn rounds(&self, count: u32, body: &[ResolvedAction]) -> String {
         let way = self.way_of(body);
         let all = Way::default().and(way, f64::from(count));
         match self.time_of(body) {
@@ -124,13 +124,13 @@ impl Details<'_> {
         }
     }
 
-    fn way_of(&self, body: &[Action]) -> Way {
+    fn way_of(&self, body: &[ResolvedAction]) -> Way {
         Way::of(body, &Way::of_movements(self.done))
     }
 
     /// Seconds, if they are known.
-    fn time_of(&self, body: &[Action]) -> Option<f64> {
-        let round = ActionKind::Repeat { count: 1, body: body.to_vec() };
+    fn time_of(&self, body: &[ResolvedAction]) -> Option<f64> {
+        let round = ResolvedActionKind::Repeat { count: 1, body: body.to_vec() };
         self.driver.drive(Pose::default(), &round).map(|leg| leg.duration)
     }
 }
@@ -153,22 +153,22 @@ pub(crate) fn way_of(leg: &Leg) -> String {
     format!("{} to {}, relative to the start of the movement.", pose(&leg.from), pose(&leg.to))
 }
 
-pub(super) fn open_end(action: &Action) -> String {
+pub(super) fn open_end(action: &ResolvedAction) -> String {
     open_end_reason(&action.kind, &action.text)
 }
 
 /// Why the end of an action depends on the world.
-pub(crate) fn open_end_reason(kind: &ActionKind, text: &str) -> String {
+pub(crate) fn open_end_reason(kind: &ResolvedActionKind, text: &str) -> String {
     match kind {
-        ActionKind::Slam => "the path of `slam` depends on what it explores".to_owned(),
-        ActionKind::TurnUntil { .. } => format!("`{text}` ends when the way is clear"),
-        ActionKind::If { .. } => format!("what `{text}` does depends on its sensors"),
-        ActionKind::Repeat { .. } | ActionKind::Do { .. } => {
+        ResolvedActionKind::Slam => "the path of `slam` depends on what it explores".to_owned(),
+        ResolvedActionKind::TurnUntil { .. } => format!("`{text}` ends when the way is clear"),
+        ResolvedActionKind::If { .. } => format!("what `{text}` does depends on its sensors"),
+        ResolvedActionKind::Repeat { .. } | ResolvedActionKind::Do { .. } => {
             format!("what `{text}` does depends on what sensors detect")
         }
-        ActionKind::Move { .. }
-        | ActionKind::Turn { .. }
-        | ActionKind::Wait { .. }
-        | ActionKind::RepeatUntil { .. } => format!("`{text}` ends when its condition holds"),
+        ResolvedActionKind::Move { .. }
+        | ResolvedActionKind::Turn { .. }
+        | ResolvedActionKind::Wait { .. }
+        | ResolvedActionKind::RepeatUntil { .. } => format!("`{text}` ends when its condition holds"),
     }
 }

@@ -1,6 +1,6 @@
 //! A turn on a circle: where its centre is, the circle of each wheel, and how fast that turns.
 
-use pydslrep_analysis::environment::{ActionKind, Circle, Robot, Wheel};
+use pydslrep_analysis::environment::{Circle, ResolvedActionKind, Robot, Wheel};
 use pydslrep_kinematics::{Leg, Model, Pose, Setting, Turning, Twist};
 
 use super::format::number;
@@ -18,8 +18,10 @@ pub(super) struct Arc<'a> {
 
 impl<'a> Arc<'a> {
     /// That of an action; `None` if it is another one.
-    pub(super) fn new(robot: &'a Robot, model: &'a Model, kind: &ActionKind) -> Option<Self> {
-        let ActionKind::Turn { left, degrees, circle: Some(Circle { radius, reverse }), speed, .. } = *kind
+    pub(super) fn new(robot: &'a Robot, model: &'a Model, kind: &ResolvedActionKind) -> Option<Self> {
+        let ResolvedActionKind::Turn {
+            left, degrees, circle: Some(Circle { radius, reverse }), speed, ..
+        } = *kind
         else {
             return None;
         };

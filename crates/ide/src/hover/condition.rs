@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use pydslrep_analysis::environment::{ActionKind, Environment, Robot};
+use pydslrep_analysis::environment::{Environment, ResolvedActionKind, Robot};
 use pydslrep_analysis::{Database, Driver, EntityId, EntityRef, FileId, scene};
 use pydslrep_kinematics::{Model, Pose, Turning, Twist, motion};
 use pydslrep_scene::{Sensor, SensorKind, defaults};
@@ -158,19 +158,19 @@ struct Stop {
 
 impl Stop {
     /// That of an action; `None` where nothing moves while the condition is asked.
-    fn of(model: &Model, kind: &ActionKind) -> Option<Self> {
+    fn of(model: &Model, kind: &ResolvedActionKind) -> Option<Self> {
         let (twist, speed) = match kind {
-            ActionKind::Move { distance, speed, until: Some(_) } => {
+            ResolvedActionKind::Move { distance, speed, until: Some(_) } => {
                 let ahead = distance.map_or(1.0, f64::signum);
                 (Twist { vx: ahead, ..Twist::default() }, *speed)
             }
-            ActionKind::Turn { circle, speed, until: Some(_), .. } => {
+            ResolvedActionKind::Turn { circle, speed, until: Some(_), .. } => {
                 let turning = circle.map_or(model.turning(), |circle| Turning::OnCircle {
                     radius: if circle.reverse { -circle.radius } else { circle.radius },
                 });
                 (turning.twist(1.0), *speed)
             }
-            ActionKind::TurnUntil { .. } => (model.turning().twist(1.0), motion::RIM_SPEED),
+            ResolvedActionKind::TurnUntil { .. } => (model.turning().twist(1.0), motion::RIM_SPEED),
             _ => return None,
         };
         Some(Self { twist, speed, rim: model.fastest_rim(twist) })

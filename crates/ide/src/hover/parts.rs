@@ -7,7 +7,7 @@ use pydslrep_analysis::{Database, EntityId, FileId};
 use pydslrep_kinematics::scrub_factor;
 use pydslrep_scene::defaults;
 use pydslrep_syntax::EntityKind;
-use pydslrep_syntax::ast::{Entity, SensorKind};
+use pydslrep_syntax::ast::{Entity, SensorKeyword};
 
 use super::format::{names, number};
 
@@ -25,7 +25,7 @@ pub(super) fn wheel(database: &Database, id: EntityId) -> Option<String> {
 pub(super) fn sensor(database: &Database, id: EntityId) -> Option<String> {
     let Entity::Sensor(sensor) = database.tree(id)? else { return None };
     let kind = match sensor.kind {
-        Some((SensorKind::Bumper, _)) => "Bumper: detects an obstacle on contact.",
+        Some((SensorKeyword::Bumper, _)) => "Bumper: detects an obstacle on contact.",
         _ => "Distance sensor: detects obstacles ahead.",
     };
     Some(format!("{kind} {}", used_by(database, id, EntityKind::Sensor)))

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use pydslrep_analysis::environment::{Action, ActionKind, Movement};
+use pydslrep_analysis::environment::{Movement, ResolvedAction, ResolvedActionKind};
 
 use super::format::number;
 
@@ -32,23 +32,23 @@ impl Way {
     }
 
     /// That of some actions; `done` has those of the movements that they do.
-    pub(super) fn of(actions: &[Action], done: &[Self]) -> Self {
+    pub(super) fn of(actions: &[ResolvedAction], done: &[Self]) -> Self {
         actions.iter().fold(Self::default(), |sum, action| sum.and(Self::of_action(&action.kind, done), 1.0))
     }
 
-    fn of_action(kind: &ActionKind, done: &[Self]) -> Self {
+    fn of_action(kind: &ResolvedActionKind, done: &[Self]) -> Self {
         match kind {
-            ActionKind::Move { distance: Some(distance), until: None, .. } => {
+            ResolvedActionKind::Move { distance: Some(distance), until: None, .. } => {
                 Self { length: distance.abs(), turning: 0.0 }
             }
-            ActionKind::Turn { degrees: Some(degrees), circle, until: None, .. } => Self {
+            ResolvedActionKind::Turn { degrees: Some(degrees), circle, until: None, .. } => Self {
                 length: circle.map_or(0.0, |circle| circle.radius * degrees.abs().to_radians()),
                 turning: degrees.abs(),
             },
-            ActionKind::Repeat { count, body } => {
+            ResolvedActionKind::Repeat { count, body } => {
                 Self::default().and(Self::of(body, done), f64::from(*count))
             }
-            ActionKind::Do { movement } => done.get(*movement).copied().unwrap_or_default(),
+            ResolvedActionKind::Do { movement } => done.get(*movement).copied().unwrap_or_default(),
             _ => Self::default(),
         }
     }

@@ -1,6 +1,6 @@
 //! The last valid state of movements, so that poses stay visible while the program has errors.
 
-use pydslrep_analysis::environment::{ActionKind, Movement, Robot};
+use pydslrep_analysis::environment::{Movement, ResolvedActionKind, Robot};
 use pydslrep_analysis::{Database, Driver, FileId};
 use pydslrep_kinematics::Pose;
 use pydslrep_syntax::Span;
@@ -8,7 +8,7 @@ use pydslrep_syntax::ast;
 use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
 
-use super::plan::{KnownStep, Planned, Planner, Start};
+use super::plan::{KnownStep, PlannedStep, Planner, Start};
 use super::steps::Step;
 use super::{InlayHint, lines};
 
@@ -19,7 +19,7 @@ const MAX_HINTS: usize = 2_000;
 /// request, so that hints survive errors.
 #[derive(Debug, Default)]
 pub struct KnownMovements {
-    by_name: FxHashMap<SmolStr, Known>,
+    by_name: FxHashMap<SmolStr, KnownMovement>,
     /// The lines with hints.
     lines: Vec<KnownLine>,
 }
@@ -33,7 +33,7 @@ struct KnownLine {
 
 /// The last state of a movement.
 #[derive(Debug)]
-struct Known {
+struct KnownMovement {
     /// The last valid robot.
     robot: Robot,
     steps: Vec<KnownStep>,
@@ -44,7 +44,7 @@ struct Known {
 pub(super) struct Route<'a> {
     /// Its robot, or the last valid one, if there was one.
     pub(super) robot: Option<Robot>,
-    pub(super) steps: Vec<Planned<'a>>,
+    pub(super) steps: Vec<PlannedStep<'a>>,
     /// Why poses depend on the world, from some step on.
     pub(super) reasons: Vec<String>,
 }
@@ -63,7 +63,7 @@ impl KnownMovements {
         robot: Option<Robot>,
         steps: Vec<Step<'a>>,
         done: &[Movement],
-        reason: &dyn Fn(&ActionKind, &ast::Action) -> String,
+        reason: &dyn Fn(&ResolvedActionKind, &ast::Action) -> String,
     ) -> Route<'a> {
         let before = self.by_name.remove(name);
         let robot = robot.filter(|robot| Driver::new(robot).is_ok());
@@ -79,7 +79,7 @@ impl KnownMovements {
         let (steps, remembered, _) = planner.plan(steps, &known, start);
         let reasons = planner.reasons;
         if let Some(robot) = robot.clone().filter(|_| driver.is_some()) {
-            self.by_name.insert(name.clone(), Known { robot, steps: remembered });
+            self.by_name.insert(name.clone(), KnownMovement { robot, steps: remembered });
         }
         Route { robot, steps, reasons }
     }

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use pydslrep_analysis::Driver;
-use pydslrep_analysis::environment::ActionKind;
+use pydslrep_analysis::environment::ResolvedActionKind;
 use pydslrep_kinematics::{Leg, Pose};
 use pydslrep_syntax::ast;
 
@@ -12,7 +12,7 @@ use super::steps::{Step, StepKind};
 
 /// The plan of one step.
 #[derive(Debug)]
-pub(super) struct Planned<'a> {
+pub(super) struct PlannedStep<'a> {
     /// The planned action; `None` for invalid code between actions.
     pub(super) action: Option<&'a ast::Action>,
     pub(super) kind: Arc<StepKind>,
@@ -24,7 +24,7 @@ pub(super) struct Planned<'a> {
     /// says so.
     pub(super) opens: Option<usize>,
     /// The steps of its blocks.
-    pub(super) blocks: Vec<Vec<Planned<'a>>>,
+    pub(super) blocks: Vec<Vec<PlannedStep<'a>>>,
 }
 
 /// The start pose of a step.
@@ -51,7 +51,7 @@ pub(super) struct Planner<'p> {
     /// `None` while the movement has had no robot that can drive.
     pub(super) driver: Option<&'p Driver>,
     /// Says why the end of an action depends on the world.
-    pub(super) reason: &'p dyn Fn(&ActionKind, &ast::Action) -> String,
+    pub(super) reason: &'p dyn Fn(&ResolvedActionKind, &ast::Action) -> String,
     /// The reasons so far.
     pub(super) reasons: Vec<String>,
 }
@@ -63,7 +63,7 @@ impl Planner<'_> {
         steps: Vec<Step<'a>>,
         known: &[KnownStep],
         mut start: Start,
-    ) -> (Vec<Planned<'a>>, Vec<KnownStep>, Start) {
+    ) -> (Vec<PlannedStep<'a>>, Vec<KnownStep>, Start) {
         let former = Former::new(&steps, known);
         let mut planned = Vec::with_capacity(steps.len());
         let mut remembered: Vec<KnownStep> = Vec::with_capacity(steps.len());
@@ -86,7 +86,7 @@ impl Planner<'_> {
             let (blocks, known, ends) = self.blocks(blocks, known, start);
             let (leg, next, opens) = self.step(&kind, action, start, &ends);
             remembered.iter_mut().last().into_iter().for_each(|last| last.blocks.extend_from_slice(&known));
-            planned.push(Planned { action, kind, leg, start, opens, blocks });
+            planned.push(PlannedStep { action, kind, leg, start, opens, blocks });
             start = next;
         }
         (planned, remembered, start)
@@ -98,7 +98,7 @@ impl Planner<'_> {
         blocks: Vec<Vec<Step<'a>>>,
         known: &[Vec<KnownStep>],
         start: Start,
-    ) -> (Vec<Vec<Planned<'a>>>, Vec<Vec<KnownStep>>, Vec<Start>) {
+    ) -> (Vec<Vec<PlannedStep<'a>>>, Vec<Vec<KnownStep>>, Vec<Start>) {
         if blocks.is_empty() {
             // Blocks that are not in sight keep their known steps.
             return (Vec::new(), known.to_vec(), Vec::new());
@@ -137,7 +137,7 @@ impl Planner<'_> {
                 (Some(leg.clone()), next, None)
             }
             (None, Start::At { .. } | Start::Broken) => {
-                if let (ActionKind::Repeat { .. }, [Start::Open { why }]) = (kind, ends) {
+                if let (ResolvedActionKind::Repeat { .. }, [Start::Open { why }]) = (kind, ends) {
                     return (None, Start::Open { why: *why }, None);
                 }
                 let why = self.reasons.len();

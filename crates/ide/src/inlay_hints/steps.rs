@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use pydslrep_analysis::environment::ActionKind;
+use pydslrep_analysis::environment::ResolvedActionKind;
 use pydslrep_analysis::{Database, EntityRef, KnownStatements};
 use pydslrep_syntax::Span;
 use pydslrep_syntax::ast;
@@ -22,17 +22,17 @@ pub(super) struct Step<'a> {
 #[derive(Debug)]
 pub(super) enum StepKind {
     /// A valid action.
-    Action(ActionKind),
+    Action(ResolvedActionKind),
     /// A valid action that does other movements. The numbers of those change with other edits, so it is recognised by its
     /// text.
-    Calling(ActionKind, String),
+    Calling(ResolvedActionKind, String),
     /// Invalid code, also in the blocks of an action.
     Broken,
 }
 
 impl StepKind {
     /// The action, if it is valid.
-    pub(super) fn action(&self) -> Option<&ActionKind> {
+    pub(super) fn action(&self) -> Option<&ResolvedActionKind> {
         match self {
             Self::Action(kind) | Self::Calling(kind, _) => Some(kind),
             Self::Broken => None,

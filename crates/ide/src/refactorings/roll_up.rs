@@ -126,8 +126,8 @@ impl<'a> Search<'a> {
 /// The run in a stretch of equal actions.
 fn as_run(equal: &Range<usize>, period: usize, around: Option<usize>) -> Option<Run> {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it is whole and small")]
-    let most = *COUNTS.end() as usize;
-    let count = (equal.len() / period + 1).min(most);
+    let max_count = *COUNTS.end() as usize;
+    let count = (equal.len() / period + 1).min(max_count);
     let mut first = equal.start;
     if let Some(action) = around {
         if action < equal.start || equal.end + period <= action {

@@ -1,7 +1,7 @@
 //! Rows of actions: the body of a movement, or a block in it. Text on the line of an action or on the lines before it belongs
 //! to the action.
 
-use pydslrep_analysis::MOST_BLOCKS;
+use pydslrep_analysis::MAX_BLOCK_DEPTH;
 use pydslrep_syntax::Span;
 use pydslrep_syntax::ast::{Action, Movement};
 
@@ -95,7 +95,7 @@ impl<'a> Row<'a> {
 
     /// Returns whether actions can be nested `more` blocks deeper than the row is.
     pub(super) fn has_room(&self, actions: &[Action], more: usize) -> bool {
-        self.depth + more + height(actions) <= MOST_BLOCKS
+        self.depth + more + height(actions) <= MAX_BLOCK_DEPTH
     }
 }
 

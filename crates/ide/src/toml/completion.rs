@@ -25,10 +25,10 @@ pub fn toml_completions(
     others.retain(|part| part.span != cursor.word);
     let schema = file.schema();
     let headers = headers(schema, &file.names());
-    filter_in_toml(Offers { schema, cursor, others, headers }.fitting(), text, offset, trigger)
+    filter_in_toml(TomlOffers { schema, cursor, others, headers }.fitting(), text, offset, trigger)
 }
 
-struct Offers {
+struct TomlOffers {
     schema: &'static Schema,
     cursor: CursorContext,
     /// The names in the text but for the one at the cursor.
@@ -66,7 +66,7 @@ fn headers(schema: &Schema, names: &Names) -> Vec<Header> {
     tables.flat_map(headers).collect()
 }
 
-impl Offers {
+impl TomlOffers {
     fn fitting(&self) -> Vec<Completion> {
         let free = || self.headers.iter().filter(|header| !self.is_taken(header));
         match &self.cursor.slot {

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use pydslrep_analysis::environment::{Action, ActionKind, Condition, Environment};
+use pydslrep_analysis::environment::{Condition, Environment, ResolvedAction, ResolvedActionKind};
 use pydslrep_analysis::{Database, FileId, plan, scene};
 
 /// More statements are not compared.
@@ -76,23 +76,23 @@ fn statements(environment: &Environment) -> Option<Vec<String>> {
 }
 
 /// Adds what is done; `None` if it is too much.
-fn unroll(environment: &Environment, actions: &[Action], all: &mut Vec<String>) -> Option<()> {
+fn unroll(environment: &Environment, actions: &[ResolvedAction], all: &mut Vec<String>) -> Option<()> {
     for action in actions {
         if all.len() > MAX_STATEMENTS {
             return None;
         }
         match &action.kind {
-            ActionKind::Repeat { count, body } => {
+            ResolvedActionKind::Repeat { count, body } => {
                 (0..*count).try_for_each(|_| unroll(environment, body, all))?;
             }
-            ActionKind::Do { movement } => {
+            ResolvedActionKind::Do { movement } => {
                 unroll(environment, &environment.movements[*movement].actions, all)?;
             }
-            ActionKind::RepeatUntil { until, body } => {
+            ResolvedActionKind::RepeatUntil { until, body } => {
                 let body = block(environment, body)?;
                 all.push(format!("repeat until {until:?} {{ {body} }}"));
             }
-            ActionKind::If { branches, otherwise } => {
+            ResolvedActionKind::If { branches, otherwise } => {
                 let mut rest = block(environment, otherwise)?;
                 for branch in branches.iter().rev() {
                     rest = choice(&branch.condition, &block(environment, &branch.body)?, &rest);
@@ -105,7 +105,7 @@ fn unroll(environment: &Environment, actions: &[Action], all: &mut Vec<String>) 
     Some(())
 }
 
-fn block(environment: &Environment, actions: &[Action]) -> Option<String> {
+fn block(environment: &Environment, actions: &[ResolvedAction]) -> Option<String> {
     let mut inner = Vec::new();
     unroll(environment, actions, &mut inner)?;
     Some(inner.join("; "))

@@ -8,7 +8,7 @@ use crate::Frame;
 pub static SCHEMA: Schema = Schema {
     noun: "key",
     tables: &TABLES,
-    // Larger numbers were meant in another unit.
+    // Larger numbers were written in another unit.
     largest: 1e6,
     too_large: "is beyond 1000 km, or not finite",
 };

@@ -5,7 +5,7 @@ use pydslrep_schema::{Contents, Names, Problem, ProblemKind, Section, Span};
 
 use super::keys::SCHEMA;
 use crate::{
-    Body, Frame, Noise, Obstacle, Robot, Scene, Shape, Thing, Trajectory, TrajectoryError, Waypoint,
+    Body, Frame, Noise, Obstacle, Robot, Scene, SceneObject, Shape, Trajectory, TrajectoryError, Waypoint,
     defaults, mounts_by_name, ros2, space,
 };
 
@@ -210,14 +210,14 @@ impl Reader {
         if !self.scene.collisions {
             return;
         }
-        for (robot, thing) in self.scene.overlaps() {
+        for (robot, other) in self.scene.overlaps() {
             let start = |robot: usize| self.starts.iter().find(|(index, _)| *index == robot);
-            let (what, other) = match thing {
-                Thing::Obstacle(index) => (&self.scene.obstacles[index].name, None),
-                Thing::Robot(index) => (&self.scene.robots[index].name, start(index)),
+            let (what, other_start) = match other {
+                SceneObject::Obstacle(index) => (&self.scene.obstacles[index].name, None),
+                SceneObject::Robot(index) => (&self.scene.robots[index].name, start(index)),
             };
             let name = &self.scene.robots[robot].name;
-            let span = start(robot).or(other).and_then(|(_, span)| *span);
+            let span = start(robot).or(other_start).and_then(|(_, span)| *span);
             let message = format!("robot `{name}` starts in `{what}`");
             let problem =
                 Problem::new(ProblemKind::InvalidValue, format!("robots.{name}.start"), span, message);

@@ -65,7 +65,7 @@ fn a_two_wheel_robot_stands_on_casters() {
 
 #[test]
 fn wheels_that_scrub_touch_the_floor_in_their_own_way() {
-    let robots = vec![robot("plain", Drive::FourWheel, &[]), robot("other", Drive::FourMecanum, &[])];
+    let robots = vec![robot("plain", Drive::FourWheel, &[]), robot("other", Drive::Mecanum, &[])];
     let (scene, _) = read("[world]\nfriction = 0.3\n", Scene::empty_floor(robots));
     let text = mjcf(&scene);
     let pairs: Vec<&str> = text.lines().map(str::trim).filter(|line| line.starts_with("<pair ")).collect();
@@ -146,17 +146,17 @@ fn attributes(text: &str, element: &str, key: &str) -> Vec<Vec<f64>> {
 
 #[test]
 fn rollers_touch_the_floor_along_the_way_that_a_wheel_pushes() {
-    let text = mjcf(&Scene::empty_floor(vec![robot("m", Drive::FourMecanum, &[])]));
+    let text = mjcf(&Scene::empty_floor(vec![robot("m", Drive::Mecanum, &[])]));
     let axes = attributes(&text, "joint", "axis");
     // A wheel's own joint, then those of its rollers; the first one is at the bottom.
     let lowest: Vec<f64> = axes.chunks(10).map(|wheel| wheel[1][1] / wheel[1][0]).collect();
-    let pushes: Vec<f64> = Drive::FourMecanum.row().wheels.iter().map(|wheel| wheel.push).collect();
+    let pushes: Vec<f64> = Drive::Mecanum.row().wheels.iter().map(|wheel| wheel.push).collect();
     assert_eq!(lowest, pushes);
 }
 
 #[test]
 fn mecanum_wheels_are_round() {
-    let text = mjcf(&Scene::empty_floor(vec![robot("m", Drive::FourMecanum, &[])]));
+    let text = mjcf(&Scene::empty_floor(vec![robot("m", Drive::Mecanum, &[])]));
     let ellipsoids = attributes(&text, "geom", "size");
     let ellipsoid =
         ellipsoids.iter().find(|size| size.len() == 3 && size[0] > 0.0 && size[2] > size[0]).unwrap();

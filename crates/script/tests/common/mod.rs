@@ -1,7 +1,8 @@
 //! Environments to generate scripts from.
 
 use pydslrep_analysis::environment::{
-    Action, ActionKind, Environment, Movement, Objects, Robot, Ros2, Sensor, SensorKind, Source, Wheel,
+    Environment, Movement, Objects, ResolvedAction, ResolvedActionKind, Robot, Ros2, Sensor, SensorKind,
+    Source, Wheel,
 };
 use pydslrep_kinematics::Drive;
 
@@ -37,27 +38,27 @@ pub(crate) fn with_sensors(mut robot: Robot, names: &[&str]) -> Robot {
 }
 
 /// An action; its movement numbers it.
-pub(crate) fn action(kind: ActionKind, text: String, at: u32) -> Action {
-    Action { number: 0, kind, text, source: line(at) }
+pub(crate) fn action(kind: ResolvedActionKind, text: String, at: u32) -> ResolvedAction {
+    ResolvedAction { number: 0, kind, text, source: line(at) }
 }
 
 /// `move D meters`, at the default speed.
-pub(crate) fn move_by(distance: f64, at: u32) -> Action {
-    let kind = ActionKind::Move { distance: Some(distance), speed: 0.09, until: None };
+pub(crate) fn move_by(distance: f64, at: u32) -> ResolvedAction {
+    let kind = ResolvedActionKind::Move { distance: Some(distance), speed: 0.09, until: None };
     action(kind, format!("move {distance:?} meters"), at)
 }
 
 /// `move D meters at V`, V in cm/s.
-pub(crate) fn move_at(distance: f64, speed: f64, at: u32) -> Action {
-    let kind = ActionKind::Move { distance: Some(distance), speed: speed / 100.0, until: None };
+pub(crate) fn move_at(distance: f64, speed: f64, at: u32) -> ResolvedAction {
+    let kind = ResolvedActionKind::Move { distance: Some(distance), speed: speed / 100.0, until: None };
     action(kind, format!("move {distance:?} meters at {speed:?}"), at)
 }
 
 /// `turn left A` or `turn right A`, A in degrees.
-pub(crate) fn turn(degrees: f64, at: u32) -> Action {
+pub(crate) fn turn(degrees: f64, at: u32) -> ResolvedAction {
     let side = if degrees < 0.0 { "right" } else { "left" };
     let text = format!("turn {side} {:?}", degrees.abs());
-    let turn = ActionKind::Turn {
+    let turn = ResolvedActionKind::Turn {
         left: degrees >= 0.0,
         degrees: Some(degrees.abs()),
         circle: None,
@@ -68,13 +69,13 @@ pub(crate) fn turn(degrees: f64, at: u32) -> Action {
 }
 
 /// `turn right until { … }`; `sensors` are indices and `names` their text.
-pub(crate) fn turn_until(sensors: &[usize], names: &str, at: u32) -> Action {
-    let kind = ActionKind::TurnUntil { left: false, sensors: sensors.to_vec() };
+pub(crate) fn turn_until(sensors: &[usize], names: &str, at: u32) -> ResolvedAction {
+    let kind = ResolvedActionKind::TurnUntil { left: false, sensors: sensors.to_vec() };
     action(kind, format!("turn right until {{{names}}}"), at)
 }
 
 /// A movement of the robot with that index.
-pub(crate) fn movement(name: &str, robot: usize, mut actions: Vec<Action>) -> Movement {
+pub(crate) fn movement(name: &str, robot: usize, mut actions: Vec<ResolvedAction>) -> Movement {
     for (action, number) in actions.iter_mut().zip(1..) {
         action.number = number;
     }
@@ -99,7 +100,7 @@ pub(crate) fn area_1(drive: Drive) -> Environment {
         turn(-90.0, 8),
         move_by(4.0, 9),
         turn(-90.0, 10),
-        Action { text: "move 400.0 centimeters".to_owned(), ..move_by(4.0, 11) },
+        ResolvedAction { text: "move 400.0 centimeters".to_owned(), ..move_by(4.0, 11) },
     ];
     environment(
         "area_1",
@@ -126,7 +127,7 @@ pub(crate) fn sensors() -> Environment {
 pub(crate) fn slam() -> Environment {
     let names = ["fSensor0", "fSensor1", "fSensor2", "lSensor", "rSensor"];
     let robot = with_sensors(robot("robot_1", Drive::TwoWheel, 19999), &names);
-    let explore = action(ActionKind::Slam, "slam".to_owned(), 14);
+    let explore = action(ResolvedActionKind::Slam, "slam".to_owned(), 14);
     environment("rooms", vec![robot], vec![movement("mov_1", 0, vec![explore])], vec![vec![0]])
 }
 
@@ -135,7 +136,7 @@ pub(crate) fn four_robots() -> Environment {
     let robots = vec![
         robot("robot_1", Drive::TwoWheel, 19997),
         robot("robot_2", Drive::FourWheel, 19998),
-        robot("robot_3", Drive::FourMecanum, 19999),
+        robot("robot_3", Drive::Mecanum, 19999),
         robot("robot_4", Drive::TwoWheel, 20000),
     ];
     let movements = vec![

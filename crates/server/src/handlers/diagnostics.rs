@@ -103,7 +103,7 @@ pub(crate) fn has_many(view: &View, params: &DocumentDiagnosticParams) -> bool {
     /// Entities with problems; one takes a few microseconds.
     const MANY: usize = 500;
     let file = view.document(&params.text_document.uri).and_then(|document| document.file);
-    file.is_some_and(|file| view.database().count_troubled(file) > MANY)
+    file.is_some_and(|file| view.database().count_with_problems(file) > MANY)
 }
 
 /// `textDocument/diagnostic`. The result's id depends on the diagnostics and on when the document was opened, not on its

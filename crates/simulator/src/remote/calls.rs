@@ -34,7 +34,7 @@ pub(super) type Drivers = BTreeMap<(usize, usize), u64>;
 
 /// The wheel joint of a call.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Joint {
+pub(super) struct WheelJoint {
     pub(super) robot: usize,
     pub(super) wheel: usize,
     /// −1 if the joint's axis points to the right, so that its rate is the negative rolling rate; otherwise 1.
@@ -214,21 +214,21 @@ impl CallContext<'_> {
         }
     }
 
-    pub(super) fn joint(&self, arguments: &Arguments) -> Result<Joint, arguments::Failure> {
+    pub(super) fn joint(&self, arguments: &Arguments) -> Result<WheelJoint, arguments::Failure> {
         let (handle, _) = self.object(arguments)?;
         self.joint_of(handle).ok_or_else(|| arguments.failure(316, "object is not a joint."))
     }
 
     /// The joint with this handle, if any.
-    pub(super) fn joint_of(&self, handle: Handle) -> Option<Joint> {
+    pub(super) fn joint_of(&self, handle: Handle) -> Option<WheelJoint> {
         let Kind::Wheel { robot, wheel } = self.objects.get(handle)?.kind else { return None };
         let parts = self.world.scene().robots.get(robot).and_then(|robot| robot.wheels.get(wheel));
         let axis_sign = if parts.is_some_and(|wheel| wheel.mirrored) { -1.0 } else { 1.0 };
-        Some(Joint { robot, wheel, axis_sign })
+        Some(WheelJoint { robot, wheel, axis_sign })
     }
 
     /// Sets the target rate of a joint about its own axis, rad/s.
-    pub(super) fn set_rate(&mut self, joint: Joint, rate: f64) {
+    pub(super) fn set_rate(&mut self, joint: WheelJoint, rate: f64) {
         self.world.set_target(joint.robot, joint.wheel, joint.axis_sign * rate);
         self.drivers.insert((joint.robot, joint.wheel), self.connection);
     }
@@ -239,7 +239,7 @@ impl CallContext<'_> {
         arguments: &Arguments,
         read: fn(&World, usize, usize) -> f64,
     ) -> Result<f64, arguments::Failure> {
-        let Joint { robot, wheel, axis_sign } = self.joint(arguments)?;
+        let WheelJoint { robot, wheel, axis_sign } = self.joint(arguments)?;
         Ok(axis_sign * read(self.world, robot, wheel))
     }
 
@@ -252,7 +252,7 @@ impl CallContext<'_> {
     fn get_object_int_param(&self, arguments: &Arguments) -> Outcome {
         let ((handle, kind), parameter) = (self.object(arguments)?, arguments.integer(1)?);
         let value = match (parameter, self.joint_of(handle), kind) {
-            (info::PARAM_CONTROL_MODE, Some(Joint { robot, wheel, .. }), _) => {
+            (info::PARAM_CONTROL_MODE, Some(WheelJoint { robot, wheel, .. }), _) => {
                 let is_controlled = self.world.is_controlled(robot, wheel);
                 if is_controlled { info::CONTROL_VELOCITY } else { info::CONTROL_FREE }
             }
@@ -268,7 +268,7 @@ impl CallContext<'_> {
     fn set_object_int_param(&mut self, arguments: &Arguments) -> Outcome {
         let (handle, parameter, value) =
             (self.object(arguments)?.0, arguments.integer(1)?, arguments.integer(2)?);
-        let Some(Joint { robot, wheel, .. }) =
+        let Some(WheelJoint { robot, wheel, .. }) =
             self.joint_of(handle).filter(|_| parameter == info::PARAM_CONTROL_MODE)
         else {
             return Err(arguments.failure(316, "could not set parameter."));
@@ -355,7 +355,7 @@ impl CallContext<'_> {
             distance: seen.distance,
             // Scaled to the measured distance.
             point: way.try_normalize(f64::MIN_POSITIVE).map_or(way, |way| way * seen.distance),
-            handle: self.objects.handle_of(seen.what).unwrap_or(-1),
+            handle: self.objects.handle_of(seen.object).unwrap_or(-1),
             normal: frame.inverse_transform_vector(&Vector3::new(seen.normal.0, seen.normal.1, 0.0)),
         })
     }

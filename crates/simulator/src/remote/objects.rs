@@ -6,7 +6,7 @@ use std::iter;
 
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use pydslrep_kinematics::Pose;
-use pydslrep_scene::{Frame, Scene, Thing};
+use pydslrep_scene::{Frame, Scene, SceneObject};
 
 use super::info;
 use super::parts::{Part, PartKind};
@@ -123,15 +123,15 @@ impl Objects {
     }
 
     /// The handle of a detected object.
-    pub(super) fn handle_of(&self, thing: Thing) -> Option<Handle> {
-        if let Thing::Obstacle(obstacle) = thing
+    pub(super) fn handle_of(&self, object: SceneObject) -> Option<Handle> {
+        if let SceneObject::Obstacle(obstacle) = object
             && let Some(handle) = self.obstacles.get(&obstacle)
         {
             return Some(*handle);
         }
-        let kind = match thing {
-            Thing::Robot(robot) => Kind::Robot(robot),
-            Thing::Obstacle(obstacle) => Kind::Obstacle(obstacle),
+        let kind = match object {
+            SceneObject::Robot(robot) => Kind::Robot(robot),
+            SceneObject::Obstacle(obstacle) => Kind::Obstacle(obstacle),
         };
         self.iter().find(|(_, object)| object.kind == kind).map(|(handle, _)| handle)
     }

@@ -127,12 +127,12 @@ impl Mover {
             if time >= to {
                 return None;
             }
-            let piece = self.trajectory.piece(time);
-            let end = piece.until.min(to);
-            time = match self.distance(robot, time, STRIKE + piece.speed * (end - time)) {
+            let segment = self.trajectory.segment(time);
+            let end = segment.until.min(to);
+            time = match self.distance(robot, time, STRIKE + segment.speed * (end - time)) {
                 None => end,
                 Some(distance) if distance < STRIKE => return Some(time),
-                Some(distance) => end.min(time + (distance - STRIKE / 2.0) / piece.speed),
+                Some(distance) => end.min(time + (distance - STRIKE / 2.0) / segment.speed),
             };
         }
         None

@@ -1,5 +1,5 @@
 use pydslrep_kinematics::Drive;
-use pydslrep_scene::{Noise, Obstacle, Robot, Shape, Thing, Trajectory, Waypoint, Wheel};
+use pydslrep_scene::{Noise, Obstacle, Robot, SceneObject, Shape, Trajectory, Waypoint, Wheel};
 
 use super::*;
 
@@ -53,7 +53,7 @@ fn turns_on_the_spot_to_the_left() {
 
 #[test]
 fn mecanum_wheels_drive_sideways() {
-    let mut world = world(Drive::FourMecanum);
+    let mut world = world(Drive::Mecanum);
     for (wheel, rate) in [-1.0, 1.0, 1.0, -1.0].into_iter().enumerate() {
         world.set_target(0, wheel, rate);
     }
@@ -285,10 +285,10 @@ fn sensors_detect_walls_and_other_robots() {
     let robots = vec![robot("a", 0.0, 0.0, 0.0), robot("b", 0.0, 3.0, 0.0), robot("c", 0.5, 3.0, 0.0)];
     let world = World::new(Scene { robots, obstacles: vec![wall], ..Scene::default() }).unwrap();
     let seen = world.sight(0, 0).unwrap();
-    assert!((seen.distance - 0.8).abs() < 1e-9 && seen.what == Thing::Obstacle(0), "{seen:?}");
+    assert!((seen.distance - 0.8).abs() < 1e-9 && seen.object == SceneObject::Obstacle(0), "{seen:?}");
     assert_eq!(world.sight(0, 1), None, "out of range of a bumper");
     let seen = world.sight(1, 0).unwrap();
-    assert!((seen.distance - 0.2).abs() < 1e-9 && seen.what == Thing::Robot(2), "{seen:?}");
+    assert!((seen.distance - 0.2).abs() < 1e-9 && seen.object == SceneObject::Robot(2), "{seen:?}");
     assert_eq!((world.sight(2, 0), world.sight(9, 0), world.sight(0, 9)), (None, None, None));
 }
 

@@ -1,6 +1,6 @@
 //! The layout of one entity without errors.
 
-use super::gap::{Blank, Gap, Place};
+use super::gap::{Blank, Gap, GapContext};
 use super::piece::{Item, ItemKind};
 use super::writer::Writer;
 use crate::{EntityKind, Token, TokenKind};
@@ -124,7 +124,8 @@ impl Layout<'_> {
                 let indent = spaces(list.indent + STEP);
                 let next_indent = if closes { spaces(list.indent) } else { indent.clone() };
                 let (indent, next_indent) = (indent.as_str(), next_indent.as_str());
-                let place = Place { indent, next_indent, opens, closes, blank: Blank::Never, hoisted: false };
+                let place =
+                    GapContext { indent, next_indent, opens, closes, blank: Blank::Never, hoisted: false };
                 return gap.write_broken(writer, &place);
             }
         } else if self.begins_line(previous, index)
@@ -138,7 +139,8 @@ impl Layout<'_> {
             }
             let outer = indent(self.depth.saturating_sub(1));
             let next_indent = if closes { outer.as_str() } else { inner.as_str() };
-            let place = Place { indent: &inner, next_indent, opens, closes, blank: Blank::Kept, hoisted };
+            let place =
+                GapContext { indent: &inner, next_indent, opens, closes, blank: Blank::Kept, hoisted };
             return gap.write_broken(writer, &place);
         }
         let glue = if self.tokens[index].0 == TokenKind::Comma { "" } else { " " };

@@ -37,7 +37,7 @@ pub(super) enum Blank {
 }
 
 /// Where a gap with a line break is.
-pub(super) struct Place<'a> {
+pub(super) struct GapContext<'a> {
     /// Before comments on lines of their own.
     pub(super) indent: &'a str,
     /// Before the second token.
@@ -151,7 +151,7 @@ impl<'a> Gap<'a> {
     }
 
     /// Writes the gap between two tokens on different lines.
-    pub(super) fn write_broken(&self, writer: &mut Writer<'_>, place: &Place<'_>) {
+    pub(super) fn write_broken(&self, writer: &mut Writer<'_>, place: &GapContext<'_>) {
         let missing_blank = place.blank == Blank::One
             && self.next_lines < 2
             && self.groups.iter().all(|group| group.lines < 2);

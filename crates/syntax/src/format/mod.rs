@@ -11,7 +11,7 @@ mod writer;
 
 pub use self::entity::COLUMNS;
 use self::entity::lay_out;
-use self::gap::{Blank, Gap, Place};
+use self::gap::{Blank, Gap, GapContext};
 use self::piece::{Item, items};
 use self::writer::{BYTE_ORDER_MARK, Writer};
 use crate::{Parse, Span, Token, TokenKind, parse};
@@ -87,7 +87,7 @@ fn separate(
     let to = next.map_or(tokens.len(), |item| item.first);
     let gap = Gap::new(text, tokens, from, to);
     let kept_indent = next.filter(|item| item.broken).map(|item| gap::indent_of(text, tokens[item.first].1));
-    let place = Place {
+    let place = GapContext {
         indent: "",
         next_indent: kept_indent.unwrap_or_default(),
         opens: previous.is_none(),

@@ -4,7 +4,7 @@ use chumsky::prelude::{Parser, choice, just};
 
 use super::slot::{NUMBER, declared_name, keyword, nothing_more, number, slot, take};
 use super::{Rule, errors};
-use crate::ast::{Entity, Import, Ip, Sensor, SensorKind, Wheel};
+use crate::ast::{Entity, Import, Ip, Sensor, SensorKeyword, Wheel};
 use crate::{EntityKind, Expected, Quantity, TokenKind, TokenSet};
 
 /// The text before the first entity: nothing, or text that fits nowhere.
@@ -49,8 +49,8 @@ pub(super) fn sensor<'s>() -> Rule<'s, Option<Entity>> {
     const COLON: TokenSet = TokenSet::of(&[TokenKind::Colon]);
     const KINDS: TokenSet = TokenSet::of(&[TokenKind::Distance, TokenKind::Bumper]);
     let kind = choice((
-        just(TokenKind::Distance).to(SensorKind::Distance),
-        just(TokenKind::Bumper).to(SensorKind::Bumper),
+        just(TokenKind::Distance).to(SensorKeyword::Distance),
+        just(TokenKind::Bumper).to(SensorKeyword::Bumper),
     ))
     .map_with(|kind, extra| (kind, extra.span()));
     just(TokenKind::Sensor)

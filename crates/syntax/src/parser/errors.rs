@@ -235,7 +235,7 @@ impl EntitySource<'_> {
         }
         // `with sensors` after a robot is no other declaration.
         let clause = token == TokenKind::Sensors && self.inside == Some(EntityKind::Robot);
-        if let Some(keyword) = meant(token, &written, &expected).filter(|_| !clause) {
+        if let Some(keyword) = misspelt_keyword(token, &written, &expected).filter(|_| !clause) {
             return SyntaxError { span, kind: SyntaxErrorKind::Misspelt { written, keyword } };
         }
         let kind = SyntaxErrorKind::Unexpected { expected, found: Found::Text(written), inside: self.inside };
@@ -249,8 +249,8 @@ impl EntitySource<'_> {
     }
 }
 
-/// The expected keyword that `written` is a slip for.
-fn meant(token: TokenKind, written: &str, expected: &[Expected]) -> Option<TokenKind> {
+/// Returns the expected keyword that `written` is a misspelling of.
+fn misspelt_keyword(token: TokenKind, written: &str, expected: &[Expected]) -> Option<TokenKind> {
     if !token.is_name() && !token.is_keyword() {
         return None;
     }

@@ -154,7 +154,7 @@ fn parse_batch(text: &str, bounds: &[(&[Token], Span)], emit: &mut impl FnMut(Sp
 }
 
 /// The tokens the parser sees, where they differ from those of the lexer: no comments, nothing in blocks that are too deep,
-/// and a misspelt keyword at the beginning is the one that is meant.
+/// and a misspelt keyword at the beginning counts as the keyword that it resembles.
 fn tokens_to_parse(piece: &str, tokens: &[Token]) -> Option<Vec<Token>> {
     let is_misspelt = misspelt_beginning(piece, tokens).is_some();
     let deep = deep_blocks(tokens);
@@ -194,7 +194,7 @@ fn deep_blocks(tokens: &[Token]) -> Vec<Span> {
 /// The braces within each other that are parsed; far more than a program may have.
 const MAX_DEPTH: usize = 40;
 
-/// Writes the keyword that is meant for a misspelt one that begins an entity.
+/// Replaces a misspelt keyword at the beginning of an entity by the correct one.
 fn correct_beginning(text: &str, tokens: &[Token], significant: &mut [Token]) {
     if let (Some(keyword), Some((first, _))) = (misspelt_beginning(text, tokens), significant.first_mut()) {
         *first = keyword;
@@ -204,10 +204,10 @@ fn correct_beginning(text: &str, tokens: &[Token], significant: &mut [Token]) {
 /// The faults, and the one of a misspelt keyword at the beginning.
 fn with_beginning(tokens: &[Token], significant: &[Token], mut faults: Vec<Fault>) -> Vec<Fault> {
     let written = tokens.iter().find(|token| !is_trivia(token));
-    if let (Some((written, span)), Some((meant, _))) = (written, significant.first())
-        && written != meant
+    if let (Some((written, span)), Some((keyword, _))) = (written, significant.first())
+        && written != keyword
     {
-        faults.insert(0, Fault::TakenForKeyword(*span, *meant));
+        faults.insert(0, Fault::TakenForKeyword(*span, *keyword));
     }
     faults
 }

@@ -18,7 +18,7 @@ MAX_SPREAD_RATIO = 0.5  # that is left if a turn was blocked
 ROUNDING = 1e-6  # radians
 TOLERANCE = 0.0005  # m between spreads that are equally good
 STEPS = math.radians(10.0), math.radians(2.0)  # of the search, and around what it found
-LEAST = math.radians(20.0)  # that a blocked turn loses
+MIN_LOSS = math.radians(20.0)  # of a turn that counts as blocked
 
 
 class Sightings:
@@ -59,7 +59,7 @@ def actual_angles(turned: Array, ends: Complex) -> Array:
     seen = Sightings(ends)
     spread, weight = seen.spreads(turned)
     contradicted = weight @ (spread > MAX_SPREAD)
-    if contradicted <= MAX_CONTRADICTED or abs(float(turned[-1])) < LEAST:
+    if contradicted <= MAX_CONTRADICTED or abs(float(turned[-1])) < MIN_LOSS:
         return turned
     angles = likeliest_blocked_turn(turned, seen)
     is_better = seen.mean_spread(angles) < MAX_SPREAD_RATIO * (spread @ weight)
@@ -69,7 +69,7 @@ def actual_angles(turned: Array, ends: Complex) -> Array:
 def likeliest_blocked_turn(turned: Array, seen: Sightings) -> Array:
     """The angles of the turn with which the sightings agree best, if it was blocked once."""
     way = abs(float(turned[-1]))
-    starts, losses = np.arange(0.0, way, STEPS[0]), np.arange(LEAST, way, STEPS[0])
+    starts, losses = np.arange(0.0, way, STEPS[0]), np.arange(MIN_LOSS, way, STEPS[0])
     for _ in STEPS:
         found = [
             (seen.mean_spread(blocked(turned, start, lost)), lost, start)

@@ -15,13 +15,13 @@ MAX_CHI2 = 9.0  # of a measurement; more is a push or a wrong match
 class Factor:
     """A factor that is estimated from measurements, with its uncertainty: a Kalman filter."""
 
-    def __init__(self, sigma: float, least: float) -> None:
+    def __init__(self, sigma: float, min_sigma: float) -> None:
         """It is about 1; `sigma` is its standard deviation before the first measurement.
 
-        `least` is the standard deviation that no number of measurements goes below.
+        `min_sigma` is the standard deviation that no number of measurements goes below.
         """
         self.value = 1.0
-        self._variance, self._least = sigma**2, least**2
+        self._variance, self._min_variance = sigma**2, min_sigma**2
 
     @property
     def sigma(self) -> float:
@@ -36,7 +36,9 @@ class Factor:
             return
         gain = self._variance * reported / spread
         self.value += gain * error
-        self._variance = max(self._variance * (1.0 - gain * reported), self._least)
+        self._variance = max(
+            self._variance * (1.0 - gain * reported), self._min_variance
+        )
 
 
 class Calibration:
@@ -44,9 +46,9 @@ class Calibration:
 
     TURN_SIGMA = 0.03
     WAY_SIGMA = 0.02
-    LEAST_TURN_SIGMA = 0.0005
-    LEAST_WAY_SIGMA = 0.004  # matches along the way are short by a millimetre or two
+    MIN_TURN_SIGMA = 0.0005
+    MIN_WAY_SIGMA = 0.004  # matches along the way are short by a millimetre or two
 
     def __init__(self) -> None:
-        self.turn = Factor(self.TURN_SIGMA, self.LEAST_TURN_SIGMA)
-        self.way = Factor(self.WAY_SIGMA, self.LEAST_WAY_SIGMA)
+        self.turn = Factor(self.TURN_SIGMA, self.MIN_TURN_SIGMA)
+        self.way = Factor(self.WAY_SIGMA, self.MIN_WAY_SIGMA)

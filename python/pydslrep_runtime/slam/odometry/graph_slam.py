@@ -305,12 +305,12 @@ class GraphSlam:
         return 0.02 + self.TRANSLATION_ERROR * math.sqrt(wheel_travel), 0.03
 
     def _neighbours(
-        self, here: Pose, within: float = NEIGHBOUR_RADIUS, most: int = MAX_NEIGHBOURS
+        self, here: Pose, within: float = NEIGHBOUR_RADIUS, limit: int = MAX_NEIGHBOURS
     ) -> list[int]:
         """The keyframes with scans that may overlap, nearest first."""
         away = [math.hypot(p.x - here.x, p.y - here.y) for p in self._graph.poses]
         near = [n for n, distance in enumerate(away) if distance < within]
-        return sorted(near, key=away.__getitem__)[:most]
+        return sorted(near, key=away.__getitem__)[:limit]
 
     def _constraints(self, number: int, found: ScanMatch) -> list[Constraint]:
         poses = self._graph.poses

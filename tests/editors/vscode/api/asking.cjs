@@ -8,8 +8,8 @@ const folder = vscode.workspace.workspaceFolders[0].uri;
 const file = (name) => vscode.Uri.joinPath(folder, name);
 const ask = (provider, ...args) => vscode.commands.executeCommand(`vscode.${provider}`, ...args);
 
-async function until(what, check, patience = 30_000) {
-  const end = Date.now() + patience;
+async function until(what, check, timeout = 30_000) {
+  const end = Date.now() + timeout;
   for (;;) {
     const value = await check();
     if (value) {

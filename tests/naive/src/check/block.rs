@@ -16,13 +16,13 @@ pub(super) fn check(scope: Scope<'_>, findings: &mut Vec<Finding>) {
     }
 }
 
-const DEEPEST: usize = 16;
+const MAX_DEPTH: usize = 16;
 
 /// Statements inside `depth` blocks: reported at the first word of those whose blocks are the first that are too deep. An
 /// `else if` is as deep as its `if`, and no second error.
 fn nested_too_deep(actions: &[Action], depth: usize, findings: &mut Vec<Finding>) {
     for action in actions {
-        if depth == DEEPEST && !action.blocks().is_empty() {
+        if depth == MAX_DEPTH && !action.blocks().is_empty() {
             findings.push(Finding::new("nested-too-deep", &action.keyword));
         }
         for part in std::iter::successors(Some(action), |action| action.else_if()) {

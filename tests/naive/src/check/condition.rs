@@ -25,7 +25,7 @@ pub(super) fn may_lack_word(action: &Action, condition: &Condition) -> bool {
 /// Bumpers measure no distance. A distance that is wrong by itself is one error only.
 fn within_of_bumpers(scope: Scope<'_>, condition: &Condition) -> Option<Finding> {
     let within = &condition.within.as_ref()?.value;
-    let is_distance = within.value() > 0.0 && within.value() <= super::value::FARTHEST;
+    let is_distance = within.value() > 0.0 && within.value() <= super::value::MAX_DISTANCE;
     let is_bumper =
         |name: &crate::program::Name| scope.sensor(&name.text).is_some_and(|sensor| sensor.bumper);
     let only_bumpers = condition.sensors.iter().all(is_bumper);

@@ -9,7 +9,7 @@ use crate::program::{Action, ActionKind, Body, Else, Movement, Number, Rounds, T
 use crate::project::{Declared, Scope};
 
 /// Seconds.
-const LONGEST: f64 = 30.0 * 86_400.0;
+const MAX_PLAN_DURATION: f64 = 30.0 * 86_400.0;
 
 /// The loops whose time is certainly too long: the first such loop of a movement, if it and what precedes it depend on no
 /// condition.
@@ -23,9 +23,9 @@ pub(super) fn certain(scope: Scope<'_>) -> Vec<Finding> {
         }
         let times = movement.actions.iter().map(|action| (action, clock.time(scope, action)));
         let mut known = times.collect::<Vec<_>>().into_iter().take_while(|(_, time)| time.is_known);
-        let too_long = known.find(|(_, time)| time.most > LONGEST);
+        let too_long = known.find(|(_, time)| time.max > MAX_PLAN_DURATION);
         if let Some((action, time)) = too_long
-            && time.least > LONGEST
+            && time.min > MAX_PLAN_DURATION
             && !clock.does_long_one(scope, action)
             && let Some(count) = count(action)
         {
@@ -42,15 +42,15 @@ pub(crate) fn doubtful(scope: Scope<'_>) -> Vec<Finding> {
     let mut plans = Vec::new();
     for (_, environment) in program.environments() {
         let listed = environment.movements.iter().filter_map(|name| scope.movement(&name.text));
-        plans.push(listed.map(|movement| clock.time_of_movement(&movement).most).sum());
+        plans.push(listed.map(|movement| clock.time_of_movement(&movement).max).sum());
     }
     let mut counts = Vec::new();
     for entity in &program.entities {
         let Body::Movement(movement) = &entity.body else { continue };
-        plans.push(clock.time_of_all(scope, &movement.actions).most);
+        plans.push(clock.time_of_all(scope, &movement.actions).max);
         counts.extend(outermost_counts(&movement.actions));
     }
-    if plans.into_iter().all(|most: f64| most <= LONGEST) {
+    if plans.into_iter().all(|max: f64| max <= MAX_PLAN_DURATION) {
         return Vec::new();
     }
     let certain = certain(scope);
@@ -88,19 +88,19 @@ fn has_sound_robot(scope: Scope<'_>, movement: &Movement) -> bool {
 /// Seconds.
 #[derive(Debug, Clone, Copy)]
 struct Time {
-    least: f64,
-    most: f64,
+    min: f64,
+    max: f64,
     /// Whether it depends on no condition and no mistake.
     is_known: bool,
 }
 
 impl Time {
-    const NONE: Self = Self { least: 0.0, most: 0.0, is_known: true };
+    const NONE: Self = Self { min: 0.0, max: 0.0, is_known: true };
     /// Where there is no plan, for another reason: nothing is concluded.
-    const NO_PLAN: Self = Self { least: 0.0, most: 0.0, is_known: false };
+    const NO_PLAN: Self = Self { min: 0.0, max: 0.0, is_known: false };
 
-    fn known(least: f64, most: f64) -> Self {
-        if most.is_finite() { Self { least, most, is_known: true } } else { Self::NO_PLAN }
+    fn known(min: f64, max: f64) -> Self {
+        if max.is_finite() { Self { min, max, is_known: true } } else { Self::NO_PLAN }
     }
 
     fn unknown(self) -> Self {
@@ -108,18 +108,14 @@ impl Time {
     }
 
     fn then(self, next: Self) -> Self {
-        Self {
-            least: self.least + next.least,
-            most: self.most + next.most,
-            is_known: self.is_known && next.is_known,
-        }
+        Self { min: self.min + next.min, max: self.max + next.max, is_known: self.is_known && next.is_known }
     }
 
     fn times(self, count: f64) -> Self {
         if count == 0.0 {
             return Self::NO_PLAN;
         }
-        Self { least: self.least * count, most: self.most * count, is_known: self.is_known }
+        Self { min: self.min * count, max: self.max * count, is_known: self.is_known }
     }
 }
 
@@ -169,7 +165,7 @@ impl Clock {
                 };
                 let round = self.time_of_all(scope, &body.actions);
                 // A round takes one step at least, when it is driven.
-                let time = Time { most: round.most + 1.0, ..round }.times(count.max(0.0));
+                let time = Time { max: round.max + 1.0, ..round }.times(count.max(0.0));
                 if count.fract() == 0.0 { time } else { time.unknown() }
             }
             ActionKind::If { then, otherwise, .. } => {
@@ -179,7 +175,7 @@ impl Clock {
                     Some(Else::If(action)) => self.time(scope, action),
                     None => Time::NONE,
                 };
-                Time { least: one.least.min(other.least), most: one.most.max(other.most), is_known: false }
+                Time { min: one.min.min(other.min), max: one.max.max(other.max), is_known: false }
             }
             ActionKind::Do { movement } => match scope.movement(&movement.text) {
                 Some(movement) => self.time_of_movement(&movement),
@@ -187,22 +183,24 @@ impl Clock {
             },
             ActionKind::Slam => Time::NO_PLAN,
         };
-        if action.condition().is_some() { Time { least: 0.0, ..time }.unknown() } else { time }
+        if action.condition().is_some() { Time { min: 0.0, ..time }.unknown() } else { time }
     }
 
     /// Whether a statement does a movement that may be too long by itself: then that one has the error.
     fn does_long_one(&mut self, scope: Scope<'_>, action: &Action) -> bool {
         let done = crate::program::flattened(std::slice::from_ref(action));
         let done = done.into_iter().filter_map(Action::done).filter_map(|name| scope.movement(&name.text));
-        done.collect::<Vec<_>>().into_iter().any(|movement| self.time_of_movement(&movement).most > LONGEST)
+        done.collect::<Vec<_>>()
+            .into_iter()
+            .any(|movement| self.time_of_movement(&movement).max > MAX_PLAN_DURATION)
     }
 }
 
 /// A way of these metres. The ramps of 0.5 m/s² take the second term, generously.
-fn driving(least: f64, most: f64, speed: Option<&Number>) -> Time {
+fn driving(min: f64, max: f64, speed: Option<&Number>) -> Time {
     let metres_per_second = speed.map_or(0.09, |speed| speed.value() / 100.0);
     if metres_per_second > 0.0 {
-        Time::known(least / metres_per_second, most / metres_per_second + 10.0 + 4.0 * metres_per_second)
+        Time::known(min / metres_per_second, max / metres_per_second + 10.0 + 4.0 * metres_per_second)
     } else {
         Time::NO_PLAN
     }

@@ -45,7 +45,7 @@ fn turn(turn: &Turn, findings: &mut Vec<Finding>) {
 }
 
 /// Metres: 1 000 km.
-pub(super) const FARTHEST: f64 = 1_000_000.0;
+pub(super) const MAX_DISTANCE: f64 = 1_000_000.0;
 
 /// Non-finite numbers are out of range and have no other finding.
 fn judge(number: &Number, code: impl Fn(f64) -> Option<&'static str>) -> Option<Finding> {
@@ -88,7 +88,7 @@ fn is_octet(digits: &str) -> bool {
 /// Beyond 1 000 km, or zero.
 fn distance(length: &Length) -> Option<Finding> {
     judge(&length.number, |value| {
-        if length.value().abs() > FARTHEST {
+        if length.value().abs() > MAX_DISTANCE {
             Some("number-out-of-range")
         } else {
             (value == 0.0).then_some("zero-distance")
@@ -100,7 +100,7 @@ fn distance(length: &Length) -> Option<Finding> {
 fn within(condition: &Condition) -> Option<Finding> {
     let length = &condition.within.as_ref()?.value;
     judge(&length.number, |value| {
-        if length.value().abs() > FARTHEST {
+        if length.value().abs() > MAX_DISTANCE {
             Some("number-out-of-range")
         } else {
             (value <= 0.0).then_some("invalid-within")
@@ -120,7 +120,7 @@ fn angle_in_place(number: &Number) -> Option<Finding> {
 
 /// Not positive, or beyond 1 000 km.
 fn radius_of_circle(length: &Length) -> Option<Finding> {
-    judge(&length.number, |value| (value <= 0.0 || length.value() > FARTHEST).then_some("invalid-arc"))
+    judge(&length.number, |value| (value <= 0.0 || length.value() > MAX_DISTANCE).then_some("invalid-arc"))
 }
 
 /// Degrees on a circle: zero, negative, or more than any robot turns. Several turns are possible there.

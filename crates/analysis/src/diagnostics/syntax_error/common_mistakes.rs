@@ -14,7 +14,7 @@ pub(super) fn problem(
     expected: &[Expected],
     found: &str,
 ) -> Option<Problem> {
-    let place = Place::new(context, span)?;
+    let place = TokenContext::new(context, span)?;
     if expected == [Expected::Path] {
         return Some(path(context, span, found));
     }
@@ -40,14 +40,14 @@ pub(super) fn problem(
 }
 
 /// A token and those around it, comments left out.
-struct Place<'a, 'c> {
+struct TokenContext<'a, 'c> {
     context: &'a Context<'c>,
     span: Span,
     tokens: Vec<(TokenKind, Span)>,
     index: usize,
 }
 
-impl<'a, 'c> Place<'a, 'c> {
+impl<'a, 'c> TokenContext<'a, 'c> {
     fn new(context: &'a Context<'c>, span: Span) -> Option<Self> {
         /// No common mistake is longer.
         const AROUND: usize = 4;
@@ -94,7 +94,7 @@ fn path(context: &Context<'_>, span: Span, found: &str) -> Problem {
 }
 
 /// `move 40 cm`
-fn distance_unit(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> Option<Problem> {
+fn distance_unit(place: &TokenContext<'_, '_>, expected: &[Expected], found: &str) -> Option<Problem> {
     if !expected.contains(&Expected::Word(TokenKind::Meters)) {
         return None;
     }
@@ -116,7 +116,7 @@ fn distance_unit(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> O
 }
 
 /// `wait 2 sec`, `wait 500 ms`
-fn time_unit(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> Option<Problem> {
+fn time_unit(place: &TokenContext<'_, '_>, expected: &[Expected], found: &str) -> Option<Problem> {
     if !expected.contains(&Expected::Word(TokenKind::Seconds)) {
         return None;
     }
@@ -138,7 +138,7 @@ fn time_unit(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> Optio
 }
 
 /// A unit that was shortened.
-fn written_out(place: &Place<'_, '_>, word: &str, found: &str) -> Problem {
+fn written_out(place: &TokenContext<'_, '_>, word: &str, found: &str) -> Problem {
     let glued = place.before(1).is_some_and(|(_, before)| before.end == place.span.start);
     let text = if glued { format!(" {word}") } else { word.to_owned() };
     RULE.problem(place.span, format!("units are written out: `{word}`, not `{found}`"))
@@ -146,7 +146,7 @@ fn written_out(place: &Place<'_, '_>, word: &str, found: &str) -> Problem {
 }
 
 /// `radius 4.5 cm`, `at 9 cm/s`, `turn left 90 degrees`
-fn needless_unit(place: &Place<'_, '_>, found: &str) -> Option<Problem> {
+fn needless_unit(place: &TokenContext<'_, '_>, found: &str) -> Option<Problem> {
     const CENTIMETRES: [&str; 7] =
         ["cm", "cms", "centimeter", "centimeters", "centimetre", "centimetres", "centi"];
     const OTHERS: [&str; 8] = ["mm", "m", "meter", "meters", "metres", "inch", "inches", "s"];
@@ -202,13 +202,13 @@ fn converted(number: &str, factor: f64) -> Option<String> {
 }
 
 /// The token with what follows it without a space: `cm/s`.
-fn glued(place: &Place<'_, '_>) -> Span {
+fn glued(place: &TokenContext<'_, '_>) -> Span {
     let rest = place.tokens[place.index..].iter().map(|(_, span)| *span);
     rest.reduce(|all, next| if all.end == next.start { all.to(next) } else { all }).unwrap_or(place.span)
 }
 
 /// `4,5`
-fn decimal_comma(place: &Place<'_, '_>) -> Option<Problem> {
+fn decimal_comma(place: &TokenContext<'_, '_>) -> Option<Problem> {
     let ((before, whole), (after, fraction)) = (place.before(1)?, place.after()?);
     let glued = whole.end == place.span.start && place.span.end == fraction.start;
     let digits = before == TokenKind::Integer && after == TokenKind::Integer;
@@ -227,7 +227,7 @@ fn decimal_comma(place: &Place<'_, '_>) -> Option<Problem> {
 }
 
 /// `robot my rover with …`
-fn two_names(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> Option<Problem> {
+fn two_names(place: &TokenContext<'_, '_>, expected: &[Expected], found: &str) -> Option<Problem> {
     let (before, first) = place.before(1)?;
     let declared = place.before(2).is_some_and(|(token, _)| token.entity_kind().is_some());
     let wanted = expected.iter().all(|expected| matches!(expected, Expected::Word(_)));
@@ -246,7 +246,7 @@ fn two_names(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> Optio
 }
 
 /// `move 4 meters` between declarations.
-fn action_outside(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> Option<Problem> {
+fn action_outside(place: &TokenContext<'_, '_>, expected: &[Expected], found: &str) -> Option<Problem> {
     let is_action = place.here().is_some_and(TokenKind::is_action);
     if !is_action || !expected.contains(&Expected::Declaration) {
         return None;
@@ -261,7 +261,7 @@ fn action_outside(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> 
 }
 
 /// `}` where nothing is open.
-fn stray_brace(place: &Place<'_, '_>, expected: &[Expected]) -> Option<Problem> {
+fn stray_brace(place: &TokenContext<'_, '_>, expected: &[Expected]) -> Option<Problem> {
     if place.here() != Some(TokenKind::CloseBrace)
         || expected.contains(&Expected::Word(TokenKind::CloseBrace))
     {
@@ -277,7 +277,7 @@ fn stray_brace(place: &Place<'_, '_>, expected: &[Expected]) -> Option<Problem> 
 }
 
 /// A comma where nothing is listed.
-fn separator(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> Option<Problem> {
+fn separator(place: &TokenContext<'_, '_>, expected: &[Expected], found: &str) -> Option<Problem> {
     let what = if expected.contains(&Expected::Declaration) {
         "declarations"
     } else if expected.contains(&Expected::Action) {
@@ -296,7 +296,7 @@ fn separator(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> Optio
 }
 
 /// `ip home localhost`, `ip home 127.0.1`
-fn address(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> Option<Problem> {
+fn address(place: &TokenContext<'_, '_>, expected: &[Expected], found: &str) -> Option<Problem> {
     if !expected.contains(&Expected::Address) {
         return None;
     }
@@ -318,7 +318,7 @@ fn address(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> Option<
 }
 
 /// `wheel "a" with …`
-fn quoted(place: &Place<'_, '_>, found: &str) -> Option<Problem> {
+fn quoted(place: &TokenContext<'_, '_>, found: &str) -> Option<Problem> {
     let inner = found.strip_prefix('"')?.strip_suffix('"')?;
     let edit = place.context.replace(place.span, inner);
     let fixed = !inner.is_empty() && repair::is_fixed(place.context, std::slice::from_ref(&edit));
@@ -329,7 +329,7 @@ fn quoted(place: &Place<'_, '_>, found: &str) -> Option<Problem> {
 }
 
 /// `1e2`, `0x10`, `1_000`
-fn glued_to_number(place: &Place<'_, '_>, expected: &[Expected]) -> Option<Problem> {
+fn glued_to_number(place: &TokenContext<'_, '_>, expected: &[Expected]) -> Option<Problem> {
     let (number, before) = place.before(1)?;
     let glued = number.is_number() && before.end == place.span.start;
     let is_unit = |word| expected.contains(&Expected::Word(word));
@@ -346,7 +346,7 @@ fn glued_to_number(place: &Place<'_, '_>, expected: &[Expected]) -> Option<Probl
 }
 
 /// `wheel 1 with …`
-fn number_for_name(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> Option<Problem> {
+fn number_for_name(place: &TokenContext<'_, '_>, expected: &[Expected], found: &str) -> Option<Problem> {
     let reference = expected.contains(&Expected::ReferenceTo(pydslrep_syntax::EntityKind::Ip));
     if reference && place.here() == Some(TokenKind::Ipv4) {
         return Some(
@@ -364,7 +364,7 @@ fn number_for_name(place: &Place<'_, '_>, expected: &[Expected], found: &str) ->
 }
 
 /// `turn left by 90`, `wait for 2 seconds`
-fn needless_word(place: &Place<'_, '_>, found: &str) -> Option<Problem> {
+fn needless_word(place: &TokenContext<'_, '_>, found: &str) -> Option<Problem> {
     let why = match place.before(1)?.0 {
         TokenKind::Left | TokenKind::Right => "the angle comes right after the direction",
         TokenKind::Move => "the distance comes right after `move`",
@@ -382,7 +382,7 @@ fn needless_word(place: &Place<'_, '_>, found: &str) -> Option<Problem> {
 }
 
 /// `if { front } detect and { left } clear { … }`
-fn combined(place: &Place<'_, '_>, found: &str) -> Option<Problem> {
+fn combined(place: &TokenContext<'_, '_>, found: &str) -> Option<Problem> {
     let help = match found {
         "and" => "put one `if` into the block of another, or list the sensors in one condition",
         "or" => "list the sensors in one condition, or write one `if` after another",
@@ -400,7 +400,7 @@ fn combined(place: &Place<'_, '_>, found: &str) -> Option<Problem> {
 }
 
 /// `move forward 4 meters`
-fn way_of_moving(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> Option<Problem> {
+fn way_of_moving(place: &TokenContext<'_, '_>, expected: &[Expected], found: &str) -> Option<Problem> {
     let early = expected.contains(&Expected::Number(Quantity::Distance));
     let late = matches!(place.before(1), Some((TokenKind::Meters | TokenKind::Centimeters, _)));
     if !early && !late {
@@ -425,7 +425,7 @@ fn way_of_moving(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> O
 }
 
 /// `turn 90 left`
-fn angle_first(place: &Place<'_, '_>, found: &str) -> Option<Problem> {
+fn angle_first(place: &TokenContext<'_, '_>, found: &str) -> Option<Problem> {
     let number = matches!(place.here(), Some(TokenKind::Integer | TokenKind::Float));
     let (after, direction) = place.after()?;
     let turn = matches!(place.before(1), Some((TokenKind::Turn, _)))
@@ -445,12 +445,12 @@ fn angle_first(place: &Place<'_, '_>, found: &str) -> Option<Problem> {
 }
 
 /// `go 4 meters`, `sleep 5`
-fn foreign_action(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> Option<Problem> {
+fn foreign_action(place: &TokenContext<'_, '_>, expected: &[Expected], found: &str) -> Option<Problem> {
     if !expected.contains(&Expected::Action) {
         return None;
     }
     let problem = RULE.problem(place.span, format!("there is no action `{found}`"));
-    let meant = match found.to_lowercase().as_str() {
+    let keyword = match found.to_lowercase().as_str() {
         "go" | "drive" | "forward" | "walk" | "run" | "advance" => "move",
         "rotate" | "spin" | "rotation" => "turn",
         "sleep" | "pause" => "wait",
@@ -469,14 +469,14 @@ fn foreign_action(place: &Place<'_, '_>, expected: &[Expected], found: &str) -> 
         "else" => return Some(problem.help("`else` follows the block of an `if`")),
         _ => return None,
     };
-    let edit = place.context.replace(place.span, meant);
-    let problem = problem.help(format!("did you mean `{meant}`?"));
+    let edit = place.context.replace(place.span, keyword);
+    let problem = problem.help(format!("did you mean `{keyword}`?"));
     let fixed = repair::is_fixed(place.context, std::slice::from_ref(&edit));
-    Some(if fixed { problem.suggestion(format!("change to `{meant}`"), [edit]) } else { problem })
+    Some(if fixed { problem.suggestion(format!("change to `{keyword}`"), [edit]) } else { problem })
 }
 
 /// `sensor s, t`
-fn another_sensor(place: &Place<'_, '_>, expected: &[Expected]) -> Option<Problem> {
+fn another_sensor(place: &TokenContext<'_, '_>, expected: &[Expected]) -> Option<Problem> {
     let Some(Entity::Sensor(_)) = place.context.tree else { return None };
     let (next, name) = place.after()?;
     if place.here() != Some(TokenKind::Comma) || !expected.contains(&Expected::Declaration) || !next.is_name()
@@ -492,7 +492,7 @@ fn another_sensor(place: &Place<'_, '_>, expected: &[Expected]) -> Option<Proble
 }
 
 /// `ip home 127.0.0.1:23000`
-fn port_of_address(place: &Place<'_, '_>) -> Option<Problem> {
+fn port_of_address(place: &TokenContext<'_, '_>) -> Option<Problem> {
     let address = matches!(place.before(1), Some((TokenKind::Ipv4, _)));
     (address && place.here() == Some(TokenKind::Colon)).then(|| {
         RULE.problem(place.span, "an ip is an address without a port")

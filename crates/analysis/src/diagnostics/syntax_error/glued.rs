@@ -7,8 +7,8 @@ use crate::diagnostics::context::Context;
 use crate::diagnostics::edits::ProblemEdit;
 use crate::diagnostics::problem::Problem;
 
-/// Longer words are not looked at.
-const LONGEST: u32 = 40;
+/// Longer words are not split.
+const MAX_WORD_LENGTH: u32 = 40;
 
 /// A word that is several.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,7 +38,7 @@ pub(super) fn find(context: &Context<'_>) -> Vec<Glued> {
 fn words_near(context: &Context<'_>, error: Span) -> Vec<Span> {
     // `repeat` ends with `at`, and is a word of its own.
     let is_word = |(token, span): &&Token| {
-        token.is_name() && !TokenKind::CONTEXTUAL.contains(token) && span.len() <= LONGEST
+        token.is_name() && !TokenKind::CONTEXTUAL.contains(token) && span.len() <= MAX_WORD_LENGTH
     };
     let touching =
         context.tokens.iter().filter(|(_, span)| span.touches(error.start) || span.touches(error.end));

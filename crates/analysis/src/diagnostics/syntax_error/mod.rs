@@ -1,7 +1,8 @@
 //! `syntax-error`: the text does not follow the grammar.
 //!
-//! [`words`] holds how what was expected is said, [`common_mistakes`] what people bring along from elsewhere, [`rewrite`] whole
-//! statements of that sort, [`glued`] words without a blank between them, [`repair`] how a fix is found: by trying what could be one.
+//! [`words`] has the phrases for what was expected; [`common_mistakes`] recognises habits from other languages, and [`rewrite`]
+//! whole statements in their syntax; [`glued`] separates words without a blank between them; [`repair`] finds fixes by trying
+//! candidates.
 
 mod common_mistakes;
 mod glued;
@@ -13,7 +14,7 @@ use pydslrep_syntax::ast::{Entity, Name};
 use pydslrep_syntax::{EntityKind, Expected, Found, Span, SyntaxError, SyntaxErrorKind, TokenKind};
 
 pub(super) use self::rewrite::{Rewrite, find as rewrites};
-use self::words::{listed, shape, telling};
+use self::words::{listed, shape, worth_listing};
 use super::context::Context;
 use super::problem::{Brace, Problem, Renaming};
 use super::{Applicability, Page, Rule};
@@ -89,7 +90,7 @@ fn misspelt(context: &Context<'_>, span: Span, written: &str, keyword: TokenKind
     } else if written.eq_ignore_ascii_case(word) {
         format!("small and capital letters count as different: this word is written `{word}`")
     } else {
-        format!("`{written}` is not a word of the language; did you mean `{word}`?")
+        format!("`{written}` is not a keyword; did you mean `{word}`?")
     };
     let problem = RULE.problem(span, message);
     let edit = context.replace(span, word);
@@ -100,9 +101,9 @@ fn misspelt(context: &Context<'_>, span: Span, written: &str, keyword: TokenKind
     }
 }
 
-/// `None` where it refers to a declaration that has the same mistake: there it is reported, for all uses.
+/// `None` for a reference to a declaration that has the same mistake: the declaration's problem stands for all its uses.
 fn keyword_as_name(context: &Context<'_>, span: Span, written: &str, of: EntityKind) -> Option<Problem> {
-    let message = format!("`{written}` is a word of the language, so {} cannot be called that", of.a_noun());
+    let message = format!("`{written}` is a keyword, so {} cannot be called that", of.a_noun());
     let help = format!("write `^{written}` to use it as a name, or choose another name");
     let problem = RULE.problem(span, message).help(help);
     let name = Name { text: written.into(), span };
@@ -116,7 +117,7 @@ fn keyword_as_name(context: &Context<'_>, span: Span, written: &str, of: EntityK
     match context.resolve(of, &name) {
         Resolution::Nothing => Some(
             RULE.problem(span, format!("expected the name of {}, found `{written}`", of.a_noun()))
-                .help(format!("`{written}` is a word of the language; only a name can stand here")),
+                .help(format!("`{written}` is a keyword; only a name can stand here")),
         ),
         Resolution::To(declared) if context.name_of(declared).is_some_and(is_bare) => None,
         _ => Some(problem.fix(format!("write `^{written}`"), [context.replace(Span::at(span.start), "^")])),
@@ -128,7 +129,7 @@ fn is_bare(name: &Name) -> bool {
     name.span.len() as usize == name.text.len()
 }
 
-/// A name that says what it is called now and what it is, and that nobody of the kind has.
+/// A name made of the current one and the kind, such as `left_sensor`, that no other declaration of the kind has.
 fn free_name(context: &Context<'_>, kind: EntityKind, written: &str) -> String {
     let stem =
         if written == kind.noun() { format!("{written}_1") } else { format!("{written}_{}", kind.noun()) };
@@ -158,7 +159,7 @@ fn missing(
     inside: Option<EntityKind>,
 ) -> Problem {
     let all = expected;
-    let expected = telling(expected);
+    let expected = worth_listing(expected);
     let closes = matches!(expected[..], [Expected::Word(TokenKind::CloseBrace)]);
     let before =
         context.tokens.iter().rev().find(|(token, other)| !token.is_comment() && other.end <= span.start);
@@ -171,7 +172,7 @@ fn missing(
     let clause = clause(&expected, found, inside);
     let what = clause.map_or_else(|| listed(&expected), |(what, _)| what.to_owned());
     let mut problem = RULE.problem(span, format!("missing {what}{place}"));
-    let braces = before.and_then(|(token, _)| words::after(*token, &expected));
+    let braces = before.and_then(|(token, _)| words::missing_braces(*token, &expected));
     if let Some(shape) = braces.map(str::to_owned).or_else(|| shape(context, inside, &expected)) {
         problem = problem.help(shape);
     }
@@ -224,7 +225,7 @@ fn unexpected(
     inside: Option<EntityKind>,
 ) -> Problem {
     let all = expected;
-    let expected = telling(expected);
+    let expected = worth_listing(expected);
     if repair::is_doubled(context, span) {
         let problem = RULE.problem(span, format!("`{found}` is written twice"));
         return problem.fix(format!("remove the second `{found}`"), [context.remove(span)]);
@@ -399,14 +400,14 @@ mod tests {
         check(
             "wheel a with radios 4.5",
             &expect![[r#"
-            error[syntax-error] 1:14 "radios" `radios` is not a word of the language; did you mean `radius`?
+            error[syntax-error] 1:14 "radios" `radios` is not a keyword; did you mean `radius`?
               fix: change to `radius` -> wheel a with radius 4.5
         "#]],
         );
         check(
             "weel a with radius 4.5",
             &expect![[r#"
-            error[syntax-error] 1:1 "weel" `weel` is not a word of the language; did you mean `wheel`?
+            error[syntax-error] 1:1 "weel" `weel` is not a keyword; did you mean `wheel`?
               fix: change to `wheel` -> wheel a with radius 4.5
         "#]],
         );
@@ -419,7 +420,7 @@ mod tests {
              robot r with port 1 has { a b } wheels with sensors { left }\n\
              movement m of r { turn left until { left } }",
             &expect![[r#"
-                error[syntax-error] 2:8 "left" `left` is a word of the language, so a sensor cannot be called that
+                error[syntax-error] 2:8 "left" `left` is a keyword, so a sensor cannot be called that
                   help: write `^left` to use it as a name, or choose another name
                   suggestion: rename it to `left_sensor_2` -> sensor left_sensor_2 ⏎ robot r with port 1 has { a b } wheels with sensors { left_sensor_2 } ⏎ movement m of r { turn left until { left_sensor_2 } }
                   fix: write `^left` -> sensor ^left ⏎ robot r with port 1 has { a b } wheels with sensors { ^left } ⏎ movement m of r { turn left until { ^left } }
@@ -434,7 +435,7 @@ mod tests {
                 error[unresolved-reference] 2:29 "b" there is no wheel called `b`
                   help: declare it: `wheel NAME with radius CENTIMETRES`
                   suggestion: declare the wheel `b` -> wheel b with radius 4.5
-                error[syntax-error] 2:55 "left" `left` is a word of the language, so a sensor cannot be called that
+                error[syntax-error] 2:55 "left" `left` is a keyword, so a sensor cannot be called that
                   help: write `^left` to use it as a name, or choose another name
                   fix: write `^left` -> robot r with port 1 has { a b } wheels with sensors { ^left }
             "#]],
@@ -461,7 +462,7 @@ mod tests {
         check(
             "wheel left with radius 4.5",
             &expect![[r#"
-                error[syntax-error] 1:7 "left" `left` is a word of the language, so a wheel cannot be called that
+                error[syntax-error] 1:7 "left" `left` is a keyword, so a wheel cannot be called that
                   help: write `^left` to use it as a name, or choose another name
                   suggestion: rename it to `left_wheel` -> wheel left_wheel with radius 4.5
                   fix: write `^left` -> wheel ^left with radius 4.5

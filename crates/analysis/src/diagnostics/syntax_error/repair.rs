@@ -8,8 +8,8 @@ use crate::diagnostics::edits::ProblemEdit;
 use crate::diagnostics::problem::Problem;
 
 /// Trying costs as much as reading the entity again, so it ends where an entity is a mess or very long.
-const MOST_ERRORS: usize = 4;
-pub(super) const LONGEST: u32 = 16 * 1024;
+const MAX_ERRORS: usize = 4;
+pub(super) const MAX_LENGTH: u32 = 16 * 1024;
 
 /// Returns whether the entity has fewer errors after the edits, and is still one entity.
 pub(super) fn is_fixed(context: &Context<'_>, edits: &[ProblemEdit]) -> bool {
@@ -34,7 +34,7 @@ fn entities_if_fixed(context: &Context<'_>, edits: &[ProblemEdit]) -> Option<usi
 /// Returns the number of entities and of errors after the edits; `None` where there is too much to try that.
 fn entities_and_errors(context: &Context<'_>, edits: &[ProblemEdit]) -> Option<(usize, usize)> {
     let end = context.tokens.last()?.1.end;
-    if context.errors.len() > MOST_ERRORS || end > LONGEST {
+    if context.errors.len() > MAX_ERRORS || end > MAX_LENGTH {
         return None;
     }
     let mut text = context.text(Span::new(0, end)).to_owned();

@@ -15,8 +15,8 @@ use super::{RULE, glued, repair, words};
 use crate::diagnostics::context::Context;
 use crate::diagnostics::problem::Problem;
 
-/// Longer statements are not looked at.
-const MOST_TOKENS: usize = 64;
+/// Longer statements are not rewritten.
+const MAX_TOKENS: usize = 64;
 
 /// A statement and how the language has it.
 #[derive(Debug, Clone, PartialEq)]
@@ -66,7 +66,7 @@ impl Rewrite {
 /// The statements of an entity that are one problem each.
 pub(crate) fn find(context: &Context<'_>) -> Vec<Rewrite> {
     let end = context.tokens.last().map_or(0, |(_, last)| last.end);
-    if context.errors.is_empty() || end > repair::LONGEST {
+    if context.errors.is_empty() || end > repair::MAX_LENGTH {
         return Vec::new();
     }
     let mut found: Vec<Rewrite> = match context.tree {
@@ -123,7 +123,7 @@ fn words_of(context: &Context<'_>, tokens: &[Token]) -> Option<Vec<Word>> {
     let last = tokens.iter().rposition(is_word)?;
     let first = tokens.iter().position(is_word)?;
     let tokens = &tokens[first..=last];
-    if tokens.len() > MOST_TOKENS || !tokens.iter().all(is_word) {
+    if tokens.len() > MAX_TOKENS || !tokens.iter().all(is_word) {
         return None;
     }
     let mut words: Vec<Word> = Vec::new();
@@ -191,11 +191,11 @@ impl Difference {
         runs.retain(|run| !run.is_empty());
         let mut respelt = Vec::new();
         left.retain(|word| {
-            let is_meant = |meant: &&str| is_similar(&word.text, meant);
-            let run = runs.iter_mut().find(|run| run.iter().any(&is_meant));
-            let meant = run.and_then(|run| Some(run.remove(run.iter().position(is_meant)?)));
-            respelt.extend(meant.map(|meant| (word.text.clone(), meant.to_owned())));
-            meant.is_none()
+            let is_expected = |keyword: &&str| is_similar(&word.text, keyword);
+            let run = runs.iter_mut().find(|run| run.iter().any(&is_expected));
+            let expected = run.and_then(|run| Some(run.remove(run.iter().position(is_expected)?)));
+            respelt.extend(expected.map(|expected| (word.text.clone(), expected.to_owned())));
+            expected.is_none()
         });
         runs.retain(|run| !run.is_empty());
         // Commas between names may stay.
@@ -216,13 +216,14 @@ impl Difference {
 
     /// Returns the message.
     fn message(&self) -> String {
-        let (written, meant): (Vec<_>, Vec<_>) = self.respelt.iter().cloned().unzip();
+        let (written, expected): (Vec<_>, Vec<_>) = self.respelt.iter().cloned().unzip();
         let clause = |words: &[String], one: &str, many: &str| match words.len() {
             0 => None,
             1 => Some(format!("{} {one}", quoted(words))),
             _ => Some(format!("{} {many}", quoted(words))),
         };
-        let is = clause(&written, "is", "are").map(|written| format!("{written} written {}", quoted(&meant)));
+        let is =
+            clause(&written, "is", "are").map(|written| format!("{written} written {}", quoted(&expected)));
         let missing = clause(&self.missing, "is missing", "are missing");
         let extra = clause(&self.extra, "does not belong here", "do not belong here");
         let clauses: Vec<String> = [is, missing, extra].into_iter().flatten().collect();

@@ -1,4 +1,4 @@
-//! The expected text, in a person's terms.
+//! Sentences and phrases for messages: what is expected at a place, and how a statement is written.
 
 use pydslrep_syntax::ast::Entity;
 use pydslrep_syntax::{EntityKind, Expected, Quantity, TokenKind};
@@ -20,10 +20,10 @@ pub(super) fn action(keyword: TokenKind) -> String {
 
 const CONDITION: &str = "a condition is written `{ SENSORS } clear` or `{ SENSORS } detect`";
 
-/// Returns what belongs between the braces that are missing after a keyword of an action.
-pub(super) fn after(before: TokenKind, expected: &[Expected]) -> Option<&'static str> {
-    let braces = expected == [Expected::Word(TokenKind::OpenBrace)];
-    if !braces && expected != [Expected::ReferenceTo(EntityKind::Sensor)] {
+/// Returns a sentence about the braces that are missing after a keyword of an action, and their content.
+pub(super) fn missing_braces(before: TokenKind, expected: &[Expected]) -> Option<&'static str> {
+    let is_brace = expected == [Expected::Word(TokenKind::OpenBrace)];
+    if !is_brace && expected != [Expected::ReferenceTo(EntityKind::Sensor)] {
         return None;
     }
     match before {
@@ -38,7 +38,7 @@ pub(super) fn after(before: TokenKind, expected: &[Expected]) -> Option<&'static
     }
 }
 
-/// The pattern to follow.
+/// Returns a sentence that shows the syntax of the statement or declaration in which the text is expected.
 pub(super) fn shape(
     context: &Context<'_>,
     inside: Option<EntityKind>,
@@ -47,45 +47,47 @@ pub(super) fn shape(
     if let Some(Entity::Import(_)) = context.tree {
         return Some("an import is written `import \"wheels.pyr\"`".to_owned());
     }
-    let wants = |asked: &[Expected]| expected.iter().any(|expected| asked.contains(expected));
+    let expects_any = |of: &[Expected]| expected.iter().any(|expected| of.contains(expected));
     let word = Expected::Word;
-    if wants(&[Expected::Action]) {
+    if expects_any(&[Expected::Action]) {
         return Some(actions());
     }
     let number = Expected::Number;
     let moves = [number(Quantity::Distance), number(Quantity::Speed)];
-    if wants(&moves) || wants(&[word(TokenKind::Meters), word(TokenKind::Centimeters)]) {
+    if expects_any(&moves) || expects_any(&[word(TokenKind::Meters), word(TokenKind::Centimeters)]) {
         return Some(action(TokenKind::Move));
     }
     let turns = [number(Quantity::Angle), Expected::ReferenceTo(EntityKind::Sensor)];
     if expected == [word(TokenKind::Until)] {
         return Some(action(TokenKind::Move));
     }
-    if wants(&[number(Quantity::Time), word(TokenKind::Seconds)]) {
+    if expects_any(&[number(Quantity::Time), word(TokenKind::Seconds)]) {
         return Some(action(TokenKind::Wait));
     }
-    if wants(&[number(Quantity::Count), word(TokenKind::Times)]) {
+    if expects_any(&[number(Quantity::Count), word(TokenKind::Times)]) {
         return Some(action(TokenKind::Repeat));
     }
-    if wants(&[word(TokenKind::Clear), word(TokenKind::Detect)]) {
+    if expects_any(&[word(TokenKind::Clear), word(TokenKind::Detect)]) {
         return Some(CONDITION.to_owned());
     }
-    let in_turn =
-        wants(&[word(TokenKind::Left), word(TokenKind::Right), word(TokenKind::Until)]) || wants(&turns);
+    let in_turn = expects_any(&[word(TokenKind::Left), word(TokenKind::Right), word(TokenKind::Until)])
+        || expects_any(&turns);
     if in_turn && inside == Some(EntityKind::Movement) {
         return Some(action(TokenKind::Turn));
     }
     let kind = inside?;
     let shape = match kind {
-        EntityKind::Sensor if wants(&[word(TokenKind::Distance), word(TokenKind::Bumper)]) => {
+        EntityKind::Sensor if expects_any(&[word(TokenKind::Distance), word(TokenKind::Bumper)]) => {
             "sensor NAME : bumper"
         }
         EntityKind::Robot
-            if wants(&[word(TokenKind::Sensors), Expected::ReferenceTo(EntityKind::Sensor)]) =>
+            if expects_any(&[word(TokenKind::Sensors), Expected::ReferenceTo(EntityKind::Sensor)]) =>
         {
             "robot NAME type tw with port 23000 has { WHEELS } wheels with sensors { SENSORS }"
         }
-        EntityKind::Environment if wants(&[word(TokenKind::Ip), Expected::ReferenceTo(EntityKind::Ip)]) => {
+        EntityKind::Environment
+            if expects_any(&[word(TokenKind::Ip), Expected::ReferenceTo(EntityKind::Ip)]) =>
+        {
             "environment NAME with ip ADDRESS has { ROBOTS } robots with { MOVEMENTS } moves"
         }
         _ => kind.shape(),
@@ -93,21 +95,25 @@ pub(super) fn shape(
     Some(format!("{} is written `{shape}`", kind.a_noun()))
 }
 
-/// Returns the expectations worth mentioning: where a name or a brace would do, no comma; in the open brace of a
-/// movement, not every word that could continue its last action; and nothing optional where something must follow.
-pub(super) fn telling(expected: &[Expected]) -> Vec<Expected> {
-    let closes = expected.contains(&Expected::Word(TokenKind::CloseBrace));
-    let lists = expected.iter().any(|expected| matches!(expected, Expected::ReferenceTo(_)));
-    let names = expected.iter().any(|expected| matches!(expected, Expected::NameOf(_)));
-    let ends = expected.contains(&Expected::Declaration);
+/// Removes from the expected text what a message need not list, unless nothing would be left:
+///
+/// * a comma where a name or `has` may follow,
+/// * where a closing brace may follow, whatever could continue the list or the action before it,
+/// * optional clauses where a mandatory one may follow,
+/// * keywords where the declaration may end.
+pub(super) fn worth_listing(expected: &[Expected]) -> Vec<Expected> {
+    let may_close = expected.contains(&Expected::Word(TokenKind::CloseBrace));
+    let may_reference = expected.iter().any(|expected| matches!(expected, Expected::ReferenceTo(_)));
+    let may_name = expected.iter().any(|expected| matches!(expected, Expected::NameOf(_)));
+    let may_end = expected.contains(&Expected::Declaration);
     let has = expected.contains(&Expected::Word(TokenKind::Has));
     let with = expected.contains(&Expected::Word(TokenKind::With));
-    let far = expected.contains(&Expected::Number(Quantity::Distance));
+    let may_be_distance = expected.contains(&Expected::Number(Quantity::Distance));
     let keep = |expected: &&Expected| match expected {
-        Expected::Word(TokenKind::Comma) => !lists && !has,
-        Expected::Word(TokenKind::Type) => !names && !with,
+        Expected::Word(TokenKind::Comma) => !may_reference && !has,
+        Expected::Word(TokenKind::Type) => !may_name && !with,
         Expected::Word(TokenKind::With | TokenKind::OpenBrace) if has => false,
-        Expected::Word(TokenKind::At | TokenKind::Until) if far => false,
+        Expected::Word(TokenKind::At | TokenKind::Until) if may_be_distance => false,
         Expected::ReferenceTo(_)
         | Expected::Action
         | Expected::Number(Quantity::Angle)
@@ -118,15 +124,16 @@ pub(super) fn telling(expected: &[Expected]) -> Vec<Expected> {
             | TokenKind::Clear
             | TokenKind::Detect
             | TokenKind::Within,
-        ) => !closes,
-        Expected::Word(TokenKind::With) if closes => false,
-        Expected::Word(_) => !ends,
+        ) => !may_close,
+        Expected::Word(TokenKind::With) if may_close => false,
+        Expected::Word(_) => !may_end,
         _ => true,
     };
     let kept: Vec<Expected> = expected.iter().filter(keep).copied().collect();
     if kept.is_empty() { expected.to_vec() } else { kept }
 }
 
+/// Returns the phrases for all that is expected: `a`, `b` or `c`.
 pub(super) fn listed(expected: &[Expected]) -> String {
     match expected {
         [] => "something else".to_owned(),
@@ -134,7 +141,7 @@ pub(super) fn listed(expected: &[Expected]) -> String {
     }
 }
 
-/// `a`, `b` or `c`
+/// Returns the texts in backticks, joined by commas and "or".
 fn quoted<'a>(texts: impl IntoIterator<Item = &'a &'a str>) -> String {
     any_of(texts.into_iter().map(|text| format!("`{text}`")))
 }

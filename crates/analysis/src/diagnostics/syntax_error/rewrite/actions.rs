@@ -6,8 +6,8 @@ use pydslrep_text::is_similar;
 use super::{Rewrite, Word, are_sound, rewrite, shape, words, words_of};
 use crate::diagnostics::context::Context;
 
-/// More are not looked at.
-const MOST_STATEMENTS: usize = 64;
+/// Statements of a block after these are not rewritten.
+const MAX_STATEMENTS: usize = 64;
 
 pub(super) fn find(context: &Context<'_>) -> Vec<Rewrite> {
     let is_open = |(token, _): &Token| *token == TokenKind::OpenBrace;
@@ -15,7 +15,7 @@ pub(super) fn find(context: &Context<'_>) -> Vec<Rewrite> {
     let (head, body) = (&context.tokens[..open], &context.tokens[open + 1..]);
     let mut found: Vec<(Rewrite, String)> = header(context, head).into_iter().collect();
     let mut follows = false;
-    for statement in statements(context, body).iter().take(MOST_STATEMENTS) {
+    for statement in statements(context, body).iter().take(MAX_STATEMENTS) {
         let action = statement_as_action(context, statement, follows);
         follows = action.is_some() && !begins_action(statement);
         found.extend(action);
@@ -170,9 +170,9 @@ fn verb(written: &str) -> Option<Verb> {
     })
 }
 
-/// The parts of a statement beside its verb.
+/// The numbers and words of a statement after its verb.
 #[derive(Debug, Default)]
-struct Said<'a> {
+struct Arguments<'a> {
     numbers: Vec<&'a str>,
     speed: Option<&'a str>,
     unit: Option<&'static str>,
@@ -180,14 +180,14 @@ struct Said<'a> {
     backwards: bool,
 }
 
-fn said(words: &[Word]) -> Option<Said<'_>> {
-    let mut said = Said::default();
+fn arguments(words: &[Word]) -> Option<Arguments<'_>> {
+    let mut arguments = Arguments::default();
     let mut speed_follows = false;
     for word in words {
         if word.is_number() {
             if !speed_follows {
-                said.numbers.push(&word.text);
-            } else if said.speed.replace(&word.text).is_some() {
+                arguments.numbers.push(&word.text);
+            } else if arguments.speed.replace(&word.text).is_some() {
                 return None;
             }
             speed_follows = false;
@@ -195,53 +195,58 @@ fn said(words: &[Word]) -> Option<Said<'_>> {
         }
         match word.text.to_lowercase().as_str() {
             "at" | "speed" | "velocity" => speed_follows = true,
-            "m" | "meter" | "meters" | "metre" | "metres" if said.speed.is_none() => {
-                said.unit = Some("meters");
+            "m" | "meter" | "meters" | "metre" | "metres" if arguments.speed.is_none() => {
+                arguments.unit = Some("meters");
             }
             "cm" | "centimeter" | "centimeters" | "centimetre" | "centimetres" => {
-                said.unit = said.unit.or(said.speed.is_none().then_some("centimeters"));
+                arguments.unit = arguments.unit.or(arguments.speed.is_none().then_some("centimeters"));
             }
-            "left" => said.direction = Some("left"),
-            "right" => said.direction = Some("right"),
-            "back" | "backward" | "backwards" => said.backwards = true,
+            "left" => arguments.direction = Some("left"),
+            "right" => arguments.direction = Some("right"),
+            "back" | "backward" | "backwards" => arguments.backwards = true,
             "forward" | "forwards" | "ahead" | "straight" | "degrees" | "degree" | "deg" | "°" | "by"
             | "for" | "to" | "the" | "a" | "distance" | "angle" | "direction" | "unit" | "of" => {}
-            "/" | "s" if said.speed.is_some() => {}
+            "/" | "s" if arguments.speed.is_some() => {}
             _ if word.is_noise() => {}
             _ => return None,
         }
     }
-    Some(said)
+    Some(arguments)
 }
 
-/// The action that a statement is meant to be, and how such are written.
+/// Returns the action that a statement stands for, and a sentence that shows the syntax of such actions.
 fn action(words: &[Word]) -> Option<(String, String)> {
     let (first, rest) = words.split_first()?;
     let verb = verb(&first.text)?;
-    let said = said(rest)?;
+    let arguments = arguments(rest)?;
     match verb {
         Verb::Move { backwards } => {
-            let [distance] = said.numbers[..] else { return None };
-            let backwards = backwards || said.backwards;
-            if said.direction.is_some() || backwards && distance.starts_with('-') {
+            let [distance] = arguments.numbers[..] else { return None };
+            let backwards = backwards || arguments.backwards;
+            if arguments.direction.is_some() || backwards && distance.starts_with('-') {
                 return None;
             }
             let sign = if backwards { "-" } else { "" };
-            let speed = said.speed.map_or(String::new(), |speed| format!(" at {speed}"));
-            let unit = said.unit.unwrap_or("meters");
+            let speed = arguments.speed.map_or(String::new(), |speed| format!(" at {speed}"));
+            let unit = arguments.unit.unwrap_or("meters");
             Some((format!("move {sign}{distance} {unit}{speed}"), words::action(TokenKind::Move)))
         }
         Verb::Turn { direction } => {
-            let direction = direction.or(said.direction)?;
-            if said.unit.is_some() || said.speed.is_some() || said.backwards || said.numbers.len() > 1 {
+            let direction = direction.or(arguments.direction)?;
+            if arguments.unit.is_some()
+                || arguments.speed.is_some()
+                || arguments.backwards
+                || arguments.numbers.len() > 1
+            {
                 return None;
             }
-            let angle = said.numbers.first().map_or(String::new(), |angle| format!(" {angle}"));
+            let angle = arguments.numbers.first().map_or(String::new(), |angle| format!(" {angle}"));
             Some((format!("turn {direction}{angle}"), words::action(TokenKind::Turn)))
         }
         Verb::Slam => {
-            let is_plain = said.numbers.is_empty() && said.unit.is_none() && said.direction.is_none();
-            (is_plain && said.speed.is_none()).then(|| ("slam".to_owned(), words::actions()))
+            let is_plain =
+                arguments.numbers.is_empty() && arguments.unit.is_none() && arguments.direction.is_none();
+            (is_plain && arguments.speed.is_none()).then(|| ("slam".to_owned(), words::actions()))
         }
     }
 }

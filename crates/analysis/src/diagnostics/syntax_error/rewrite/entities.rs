@@ -81,8 +81,9 @@ fn corrected(word: Word, kind: EntityKind) -> Word {
     if word.token != TokenKind::Name {
         return word;
     }
-    let meant = |token: &&TokenKind| token.spelling().is_some_and(|keyword| is_similar(&word.text, keyword));
-    match keywords.iter().find(meant) {
+    let is_similar_to_word =
+        |token: &&TokenKind| token.spelling().is_some_and(|keyword| is_similar(&word.text, keyword));
+    match keywords.iter().find(is_similar_to_word) {
         Some(keyword) => Word { token: *keyword, ..word },
         None => word,
     }
@@ -220,7 +221,7 @@ fn lists<'a>(words: &'a [Word], of: [TokenKind; 2]) -> Option<(Vec<List<'a>>, Ve
     Some((lists, others))
 }
 
-/// The lists of both kinds, the first of which must be there; what no word says is said by the order.
+/// The lists of both kinds, the first of which must be there. Where no keyword tells the kind of a list, their order does.
 fn in_order<'a>(lists: &[List<'a>], of: [TokenKind; 2]) -> Option<(String, Option<String>)> {
     let joined = |list: &List<'a>| list.names.join(" ");
     match lists {

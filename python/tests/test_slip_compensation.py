@@ -8,67 +8,75 @@ import pytest
 from driving import DRIVES, drive_alone, joints
 from fake_simulator import FakeRobot, FakeWorld
 from pydslrep_runtime import Robot
-from pydslrep_runtime.creep import IGNORED, LEAST, MOST, STEPS, Creep
+from pydslrep_runtime.slip_compensation import (
+    IGNORED,
+    MAX_GAIN,
+    MIN_GAIN,
+    STEPS,
+    SlipCompensation,
+)
 
 STEP = 0.05  # s
 
 
-def observe(creep: Creep, share: float, steps: int, speed: float = 0.1) -> None:
+def observe(
+    compensation: SlipCompensation, share: float, steps: int, speed: float = 0.1
+) -> None:
     """A robot moves by a share of what its wheels roll."""
     for _ in range(steps):
-        creep.observe(speed, share * speed * creep.gain * STEP, STEP)
+        compensation.observe(speed, share * speed * compensation.gain * STEP, STEP)
 
 
-def test_it_is_made_up_for_after_some_steps() -> None:
-    creep = Creep()
-    observe(creep, 0.89, STEPS)
-    assert creep.gain == 1.0, "the first step may not be steady"
-    observe(creep, 0.89, 1)
-    assert creep.gain == pytest.approx(1.0 / 0.89)
-    observe(creep, 0.89, 100)
-    assert creep.gain == pytest.approx(1.0 / 0.89), "it does not build up"
+def test_slip_is_compensated_after_some_steps() -> None:
+    compensation = SlipCompensation()
+    observe(compensation, 0.89, STEPS)
+    assert compensation.gain == 1.0, "the first step may not be steady"
+    observe(compensation, 0.89, 1)
+    assert compensation.gain == pytest.approx(1.0 / 0.89)
+    observe(compensation, 0.89, 100)
+    assert compensation.gain == pytest.approx(1.0 / 0.89), "it does not build up"
 
 
 def test_both_directions_count() -> None:
-    creep = Creep()
-    observe(creep, 0.89, STEPS + 1, speed=-0.1)
-    assert creep.gain == pytest.approx(1.0 / 0.89)
+    compensation = SlipCompensation()
+    observe(compensation, 0.89, STEPS + 1, speed=-0.1)
+    assert compensation.gain == pytest.approx(1.0 / 0.89)
 
 
 def test_small_differences_are_ignored_exactly() -> None:
     dice = random.Random(1)
-    creep = Creep()
+    compensation = SlipCompensation()
     for _ in range(1000):
-        observe(creep, 1.0 + dice.uniform(-0.9, 0.9) * IGNORED, 1)
-        assert creep.gain == 1.0
+        observe(compensation, 1.0 + dice.uniform(-0.9, 0.9) * IGNORED, 1)
+        assert compensation.gain == 1.0
 
 
 def test_it_is_forgotten_when_the_wheels_grip_again() -> None:
-    creep = Creep()
-    observe(creep, 0.85, 100)
-    observe(creep, 1.0, 500)
-    assert creep.gain == 1.0
+    compensation = SlipCompensation()
+    observe(compensation, 0.85, 100)
+    observe(compensation, 1.0, 500)
+    assert compensation.gain == 1.0
 
 
 @pytest.mark.parametrize("share", [-1.0, 0.0, 0.5, 2.0])
 def test_what_is_no_slip_is_ignored(share: float) -> None:
-    creep = Creep()
-    observe(creep, share, 100)
-    assert creep.gain == 1.0
+    compensation = SlipCompensation()
+    observe(compensation, share, 100)
+    assert compensation.gain == 1.0
 
 
 def test_the_gain_is_bounded() -> None:
-    for share in (LEAST + 1e-6, MOST - 1e-6):
-        creep = Creep()
-        observe(creep, share, 100)
-        assert LEAST <= creep.gain <= MOST
+    for share in (MIN_GAIN + 1e-6, MAX_GAIN - 1e-6):
+        compensation = SlipCompensation()
+        observe(compensation, share, 100)
+        assert MIN_GAIN <= compensation.gain <= MAX_GAIN
 
 
 def test_speeding_up_is_ignored() -> None:
-    creep = Creep()
+    compensation = SlipCompensation()
     for speed in itertools.islice(itertools.count(0.1, 0.001), 100):
-        creep.observe(speed, 0.89 * speed * STEP, STEP)
-    assert creep.gain == 1.0
+        compensation.observe(speed, 0.89 * speed * STEP, STEP)
+    assert compensation.gain == 1.0
 
 
 async def trip(robot: Robot) -> None:
@@ -78,9 +86,9 @@ async def trip(robot: Robot) -> None:
 
 
 def steps(
-    monkeypatch: pytest.MonkeyPatch, drive: str, creep: float
+    monkeypatch: pytest.MonkeyPatch, drive: str, mean_slip: float
 ) -> tuple[int, FakeRobot]:
-    fake = FakeRobot("r", joints(drive), creep=creep)
+    fake = FakeRobot("r", joints(drive), mean_slip=mean_slip)
     drive_alone(FakeWorld(fake), monkeypatch, drive, trip)
     return len(fake.rate_history), fake
 
@@ -101,8 +109,8 @@ def test_it_is_seen_in_turns(monkeypatch: pytest.MonkeyPatch, drive: str) -> Non
         await robot.turn(720.0)
 
     counts = []
-    for creep in (0.0, 0.11):
-        fake = FakeRobot("r", joints(drive), creep=creep)
+    for mean_slip in (0.0, 0.11):
+        fake = FakeRobot("r", joints(drive), mean_slip=mean_slip)
         drive_alone(FakeWorld(fake), monkeypatch, drive, turn)
         counts.append(len(fake.rate_history))
     assert counts[1] <= 1.03 * counts[0]

@@ -11,7 +11,7 @@ from types import SimpleNamespace
 from typing import Any, BinaryIO
 
 import pytest
-from ideal_rover import MOUNTS, RADIUS, IdealRover, at_once, on
+from ideal_robot import MOUNTS, RADIUS, IdealRobot, at_once, on
 from pydslrep_runtime.backend import Clock, RobotSpec, SensorCone
 from pydslrep_runtime.drives import TwoWheelDrive
 from pydslrep_runtime.errors import MovementError, SetupError, SimulatorError
@@ -34,7 +34,7 @@ class Body:
     time_step = 0.05
 
     def __init__(self, rooms: Rooms) -> None:
-        self.ideal = IdealRover(rooms, OccupancyGrid(RADIUS))
+        self.ideal = IdealRobot(rooms, OccupancyGrid(RADIUS))
         self.clock = self
         self.here = Pose(*rooms.start, 0.0)
         self.time = 0.0

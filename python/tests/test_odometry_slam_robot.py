@@ -6,17 +6,17 @@ from typing import Any
 
 import numpy as np
 import pytest
-from ideal_rover import at_once
+from ideal_robot import at_once
 from pydslrep_runtime.pose import Pose
 from pydslrep_runtime.slam.occupancy_grid import Cell, OccupancyGrid, Reading
 from pydslrep_runtime.slam.odometry.calibration import Calibration
 from pydslrep_runtime.slam.odometry.graph_slam import GraphSlam
 from pydslrep_runtime.slam.odometry.odometer import Leg
-from pydslrep_runtime.slam.odometry.rover import OdometryRover
+from pydslrep_runtime.slam.odometry.robot import OdometrySlamRobot
 from pydslrep_runtime.slam.odometry.scan_log import ScanLog
 from pydslrep_runtime.slam.odometry.surface import SurfacePoints
 from rooms import Pillar, Rooms, Wall
-from slipping_robot import SlippingRobot, rover
+from slipping_robot import SlippingRobot, slam_robot
 
 AHEAD = [Reading(Pose(0.1, 0.0, 0.0), math.radians(170.0), 0.5, is_hit=True)]
 
@@ -32,7 +32,7 @@ def test_exploring_with_wheels_that_slip() -> None:
     # A path around a block: a loop to close.
     rooms = Rooms(3.0, 3.0, start=(0.6, 0.6), pillars=[Pillar((1.5, 1.5), 0.45)])
     robot = SlippingRobot(rooms, slip=0.02, noise=0.01, seed=1)
-    explorer = rover(robot).explorer()
+    explorer = slam_robot(robot).explorer()
     at_once(explorer.explore())
     assert not robot.touched
     away, turned = robot.off()
@@ -49,9 +49,9 @@ def test_exploring_with_wheels_that_slip() -> None:
 SCALENE = Rooms(1.6, 1.2, start=(0.6, 0.5), walls=[Wall((1.2, 0.0), (1.2, 0.5))])
 
 
-def pushed(robot: SlippingRobot, angle: float) -> OdometryRover:
-    """A rover after a push that its wheels have not noticed, and another scan."""
-    exploring = rover(robot)
+def pushed(robot: SlippingRobot, angle: float) -> OdometrySlamRobot:
+    """A robot after a push that its wheels have not noticed, and another scan."""
+    exploring = slam_robot(robot)
     at_once(exploring.localise())
     robot.here = robot.here.turned(angle)
     at_once(exploring.localise())
@@ -72,7 +72,7 @@ def test_a_robot_that_was_turned_finds_its_way(degrees: float) -> None:
 def test_a_robot_notices_that_it_could_not_turn(side: float) -> None:
     rooms = Rooms(1.8, 3.0, start=(0.4, 1.0))
     robot = SlippingRobot(rooms, noise=0.01)
-    exploring = rover(robot)
+    exploring = slam_robot(robot)
     at_once(exploring.localise())
     # Its wheels turn on, by more than a quarter turn, before it is free.
     robot.blocked_steps = 110
@@ -128,7 +128,7 @@ def test_few_oblique_walls_do_not_turn_the_robot(
 
 def test_a_robot_that_was_held_finds_its_way() -> None:
     robot = SlippingRobot(Rooms(4.0, 4.0, start=(0.4, 2.0)), noise=0.01)
-    exploring = rover(robot)
+    exploring = slam_robot(robot)
     at_once(exploring.localise())
     at_once(exploring.turn_by(-exploring.pose().theta))
     # Its wheels roll on, but it does not move.
@@ -164,7 +164,7 @@ def test_a_robot_is_lost_where_two_places_look_alike() -> None:
 
 def test_a_robot_makes_room_before_it_turns() -> None:
     robot = SlippingRobot(Rooms(1.6, 1.6, start=(0.8, 0.8)))
-    exploring = rover(robot)
+    exploring = slam_robot(robot)
     at_once(exploring.localise())
     at_once(exploring.turn_by(-exploring.pose().theta))
     at_once(robot.drive_to(exploring.pose().ahead(0.6), lambda _: False))

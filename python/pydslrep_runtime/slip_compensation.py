@@ -1,14 +1,14 @@
-"""How much less a robot moves than its wheels roll, as observed while it drives."""
+"""Wheel slip: how much less a robot moves than its wheels roll, as observed while it drives."""
 
-MOST = 1.25  # times the planned speed that wheels roll, at most
-LEAST = 1.0 / MOST
-IGNORED = 0.05  # a difference that is not made up for: it is how floor and tyres vary
-STEPS = 10  # of a steady speed before it is
+MAX_GAIN = 1.25
+MIN_GAIN = 1.0 / MAX_GAIN
+IGNORED = 0.05  # a slip that is not compensated: floors and tyres vary that much
+STEPS = 10  # at a steady speed before a slip is compensated
 MEMORY = 0.98  # the share of a step's weight that remains after another one
 
 
-class Creep:
-    """Makes up for wheels that slip: in physics engines, bodies move some percent less than their wheels roll."""
+class SlipCompensation:
+    """Compensates for wheel slip: in physics engines, bodies move some percent less than their wheels roll."""
 
     def __init__(self) -> None:
         self.gain = 1.0
@@ -18,14 +18,14 @@ class Creep:
         self._speed = 0.0
 
     def observe(self, speed: float, moved: float, elapsed: float) -> None:
-        """Adds a step of seconds in which a robot, or its rims in a turn, should have moved at a speed in m/s, and has so many metres."""
+        """Adds a step: the planned speed of the robot, or of its rims in a turn, in m/s, and the metres that it moved in `elapsed` seconds."""
         if speed != self._speed:  # while a robot speeds up or brakes, it may lag behind
             self._speed = speed
             return
         rolled = speed * self.gain * elapsed
         square, product = rolled * rolled, moved * rolled
         # A robot that does something else is not slipping: it may be held by an obstacle.
-        if LEAST * square < product < MOST * square:
+        if MIN_GAIN * square < product < MAX_GAIN * square:
             self._rolled = MEMORY * self._rolled + square
             self._moved = MEMORY * self._moved + product
             self._steps += 1
@@ -34,4 +34,5 @@ class Creep:
 
     def _update(self) -> None:
         gain = self._rolled / self._moved
-        self.gain = 1.0 if abs(gain - 1.0) < IGNORED else min(max(gain, LEAST), MOST)
+        is_ignored = abs(gain - 1.0) < IGNORED
+        self.gain = 1.0 if is_ignored else min(max(gain, MIN_GAIN), MAX_GAIN)

@@ -1,4 +1,4 @@
-"""A rover without wheels or time in closed rooms: it moves exactly as told, and scans on the way."""
+"""A robot without wheels or time in closed rooms: it moves exactly as told, and scans on the way."""
 
 import math
 from collections.abc import Callable, Coroutine
@@ -43,7 +43,7 @@ def on(pose: Pose, mount: Pose) -> Pose:
     )
 
 
-class IdealRover:
+class IdealRobot:
     """Records its path and its collisions."""
 
     STEP = 0.03  # m

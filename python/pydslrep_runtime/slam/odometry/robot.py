@@ -9,7 +9,7 @@ import numpy as np
 from ...facts import RIM_SPEED
 from ...pose import Pose, wrap_angle
 from ..occupancy_grid import Position
-from ..rover import SAFETY_MARGIN, SlamRover
+from ..robot import SAFETY_MARGIN, SlamRobot
 from ..session import SlamSession
 from .calibration import Calibration
 from .graph_slam import GraphSlam
@@ -27,8 +27,8 @@ BLOCKED_TRAVEL = 14.0  # m that are as uncertain as the heading after a blocked 
 WAYS = [0.02 * count for count in range(-15, 16)]  # m to drive to have room
 
 
-class OdometryRover(SlamRover):
-    """The rover of an explorer, whose robot relies on wheel odometry."""
+class OdometrySlamRobot(SlamRobot):
+    """The robot of an explorer, by sensors and wheel odometry."""
 
     turning_speed = 0.5 * RIM_SPEED  # wheels slip less when they turn slowly
     pose_margin = 0.05

@@ -10,7 +10,7 @@ STOPPED, PAUSED = 0, 8  # states of a simulation
 HELD = "another client holds the simulation's time: it is in stepping mode and takes no step"
 
 
-class Patience(Notes):
+class WaitPolicy(Notes):
     """Decides whether to go on waiting, and says once why."""
 
     def __init__(self, address: str) -> None:

@@ -19,8 +19,8 @@ OBSERVE_ANGLE = math.radians(5.0)  # ... to turn
 SAFETY_MARGIN = 0.02  # m around the robot to keep free
 
 
-class SlamRover:
-    """The rover of an explorer, whose robot knows its pose."""
+class SlamRobot:
+    """The robot of an explorer, by sensors and a known pose."""
 
     turning_speed = RIM_SPEED  # m/s at the rims
     pose_margin = 0.0  # m of error in the pose
