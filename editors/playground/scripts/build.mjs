@@ -5,6 +5,8 @@ import path from "node:path";
 
 import esbuild from "esbuild";
 
+import { wheels } from "./wheels.mjs";
+
 const root = path.resolve(import.meta.dirname, "..");
 const repository = path.resolve(root, "../..");
 const dist = path.join(root, "dist");
@@ -17,6 +19,7 @@ if (!existsSync(path.join(web, "worker.js"))) {
   process.exit(1);
 }
 const wasmModule = path.join(web, "pydslrep.js");
+const packages = wheels();
 
 /** The texts of all files below a folder, by path. */
 function textsIn(folder, suits) {
@@ -62,7 +65,8 @@ function python() {
   const isPython = (name) => name.endsWith(".py");
   const runtime = textsIn(path.join(repository, "python/pydslrep_runtime"), isPython);
   const own = textsIn(path.join(root, "src/run/python"), isPython);
-  return { files: { ...Object.fromEntries(Object.entries(runtime).map(([name, text]) => [`pydslrep_runtime/${name}`, text])), ...own } };
+  const files = { ...Object.fromEntries(Object.entries(runtime).map(([name, text]) => [`pydslrep_runtime/${name}`, text])), ...own };
+  return { files, wheels: packages.names };
 }
 
 /** Modules whose values are made here. */
@@ -106,12 +110,13 @@ function copy() {
   for (const name of ["pyodide.asm.mjs", "pyodide.asm.wasm", "python_stdlib.zip", "pyodide-lock.json"]) {
     cpSync(path.join(pyodide, name), path.join(dist, "pyodide", name));
   }
+  for (const name of packages.names) copyFileSync(path.join(packages.folder, name), path.join(dist, "pyodide", name));
 }
 
-/** The licences of the packages in the bundles. */
+/** The licences of the npm packages in the bundles and of the Python packages. */
 function licences(inputs) {
   const folders = [...inputs, "node_modules/pyodide/"].map((input) => /^.*node_modules\/(?:@[^/]+\/)?[^/]+/.exec(input)?.[0]);
-  return [...new Set(folders)]
+  const ofBundles = [...new Set(folders)]
     .filter((folder) => folder !== undefined)
     .sort()
     .map((folder) => {
@@ -119,8 +124,13 @@ function licences(inputs) {
       const file = readdirSync(path.join(root, folder)).find((name) => /^licen[cs]e/i.test(name));
       const text = file === undefined ? `Licence: ${manifest.license}; ${manifest.homepage ?? ""}\n` : read(path.join(root, folder, file));
       return `${manifest.name} ${manifest.version}\n\n${text}`;
-    })
-    .join("\n----\n\n");
+    });
+  const ofWheels = packages.names.map((wheel) => {
+    const [name, version] = wheel.split("-");
+    const texts = textsIn(path.join(packages.folder, path.parse(wheel).name, `${name}-${version}.dist-info/licenses`), () => true);
+    return `${name} ${version}\n\n${Object.values(texts).join("\n")}`;
+  });
+  return [...ofBundles, ...ofWheels].join("\n----\n\n");
 }
 
 rmSync(dist, { recursive: true, force: true });

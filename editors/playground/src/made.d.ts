@@ -9,9 +9,12 @@ declare module "virtual:examples" {
   export const imported: Readonly<Record<string, string>>;
 }
 
-/** What scripts import, by path: `python/pydslrep_runtime`, and stand-ins for modules that are compiled elsewhere. */
+/** What scripts import. */
 declare module "virtual:python" {
+  /** `python/pydslrep_runtime`, and the stand-in for `zmq`, by path. */
   export const files: Readonly<Record<string, string>>;
+  /** The names of the packages in `pyodide/`. */
+  export const wheels: readonly string[];
 }
 
 /** What wasm-bindgen makes of crates/browser. */

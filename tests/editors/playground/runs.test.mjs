@@ -168,3 +168,13 @@ test("a movement that fails ends the run with its reason", async () => {
   assert.match(await playground.page.locator("#log .error").first().innerText(), /^error: /);
   await playground.close();
 });
+
+test("a package that cannot be loaded is named", async () => {
+  const playground = await Playground.open(browser, site.address);
+  await playground.page.context().route("**/cbor2-*.whl", (route) => route.abort());
+  await playground.pathShown("yard");
+  await playground.run();
+  assert.equal(await playground.ended(), 2);
+  assert.match(await playground.page.locator("#log .error").innerText(), /Python cannot be loaded: .*cbor2/);
+  await playground.close();
+});

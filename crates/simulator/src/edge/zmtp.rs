@@ -1,8 +1,11 @@
 //! The ZeroMQ message transport protocol 3.0 (RFC 23), server side, as bytes in and messages out.
 //!
-//! Implements only a ROUTER socket without authentication. It is our own because the pure Rust `zeromq` crate (0.7)
-//! allocates as much memory as a frame's header announces: nine bytes from anyone abort the process. Here memory grows
-//! with the received data, and frames that announce more than [`MAX_MESSAGE`] are rejected.
+//! Implements only a ROUTER socket without authentication. It is our own for two reasons:
+//!
+//! * The pure Rust `zeromq` crate (0.7) allocates as much memory as a frame's header announces: nine bytes from anyone abort
+//!   the process. Here memory grows with the received data, and frames that announce more than [`MAX_MESSAGE`] are rejected.
+//! * One port serves both this protocol and that of the legacy remote API, which the listener tells apart by the first byte
+//!   of a connection. Sockets of the crate open the port themselves and take no connection that is accepted already.
 
 use super::ProtocolError;
 

@@ -1,5 +1,5 @@
 // The worker that runs scripts, one after another: Python as WebAssembly, and a simulator for each that answers it at once.
-import { files as python } from "virtual:python";
+import { files as python, wheels } from "virtual:python";
 import { loadPyodide, type PyodideAPI } from "pyodide";
 
 import type { FromRun, Results, Task } from "./messages";
@@ -20,7 +20,9 @@ function post(message: FromRun): void {
 }
 
 async function prepare(): Promise<PyodideAPI> {
-  const pyodide = await loadPyodide({ indexURL: new URL("pyodide/", self.location.href).href });
+  const folder = new URL("pyodide/", self.location.href);
+  const pyodide = await loadPyodide({ indexURL: folder.href });
+  await install(pyodide, wheels.map((name) => new URL(name, folder).href));
   for (const [path, text] of Object.entries(python)) {
     const file = `${MODULES}/${path}`;
     pyodide.FS.mkdirTree(file.slice(0, file.lastIndexOf("/")));
@@ -30,6 +32,14 @@ async function prepare(): Promise<PyodideAPI> {
   pyodide.FS.chdir(HOME);
   pyodide.runPython(`import sys; sys.path.insert(0, "${MODULES}")`);
   return pyodide;
+}
+
+/** Installs packages; Pyodide itself only says what it cannot load. */
+async function install(pyodide: PyodideAPI, addresses: string[]): Promise<void> {
+  const problems: string[] = [];
+  const options = { messageCallback: () => undefined, errorCallback: (text: string) => problems.push(text) };
+  const installed = await pyodide.loadPackage(addresses, options);
+  if (installed.length < addresses.length) throw new Error(problems.join("\n"));
 }
 
 const prepared = prepare();

@@ -72,13 +72,18 @@ class Lines(io.TextIOBase):
 
 
 def forget_modules() -> None:
-    """Unloads the modules of an earlier script: those beside this one, and the simulator, of which each run has its own."""
+    """Unloads the modules of an earlier script: those beside this one, and the simulator, of which each run has its own.
+
+    So does CoppeliaSim's client, which keeps the `zmq` that it has imported. `cbor2` stays: it is compiled, and cannot be
+    initialized twice.
+    """
     folder = __file__.rpartition("/")[0]
     for name, module in list(sys.modules.items()):
         file = getattr(module, "__file__", None) or ""
         if name != __name__ and file.startswith(f"{folder}/"):
             del sys.modules[name]
-    sys.modules.pop("_pydslrep_simulator", None)
+    for name in ("coppeliasim_zmqremoteapi_client", "_pydslrep_simulator"):
+        sys.modules.pop(name, None)
 
 
 def start(
