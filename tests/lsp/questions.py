@@ -190,12 +190,12 @@ REQUESTS: dict[str, Callable[[Buffer], dict[str, Any]]] = {
     "codeAction/resolve": lambda b: {
         "title": "Generate script yard.py",
         "kind": "source.generateScript",
-        "data": script(b),
+        "data": {"edit": "script", **script(b)},
     },
     "codeAction/resolve#all": lambda b: {
         "title": "Fix all",
         "kind": "source.fixAll",
-        "data": {"uri": b.uri, "fixAll": None},
+        "data": {"edit": "fix-all", "uri": b.uri, "code": None},
     },
     "workspace/executeCommand": lambda b: {
         "command": "pydslrep.showKinematics",

@@ -38,6 +38,7 @@ mod log;
 mod message;
 #[cfg(feature = "process")]
 mod message_loop;
+mod noun;
 mod page;
 #[cfg(target_os = "linux")]
 #[cfg(feature = "process")]

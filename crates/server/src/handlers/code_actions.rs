@@ -8,6 +8,8 @@ use pydslrep_analysis::FileId;
 use pydslrep_ide as ide;
 use pydslrep_output::WriteError;
 use pydslrep_scene::ENDING;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use tower_lsp::jsonrpc::{Error, Result};
 use tower_lsp::ls_types::{
     CodeAction, CodeActionDisabled, CodeActionKind, CodeActionOptions, CodeActionOrCommand, CodeActionParams,
@@ -44,6 +46,28 @@ pub(crate) const GENERATE_SCRIPT: &str = "pydslrep.generateScript";
 
 /// The command that writes the package that a script imports, where the client has created the script.
 pub(crate) const WRITE_RUNTIME: &str = "pydslrep.writeRuntime";
+
+/// The data of an action until it is chosen.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(tag = "edit", rename_all = "kebab-case")]
+enum ActionData {
+    FixAll(FixAllOf),
+    /// Creates or replaces the script of an environment.
+    Script(ChosenEnvironment),
+}
+
+impl ActionData {
+    fn program(&self) -> &Uri {
+        match self {
+            Self::FixAll(which) => &which.uri,
+            Self::Script(which) => &which.uri,
+        }
+    }
+
+    fn encoded(&self) -> Option<Value> {
+        serde_json::to_value(self).ok()
+    }
+}
 
 pub(crate) fn announce(server: &mut ServerCapabilities, client: &ClientFeatures) {
     let kinds = vec![
@@ -281,7 +305,7 @@ fn script_action(
         action.command = Some(Command::new(title, WRITE_RUNTIME.to_owned(), Some(vec![argument.clone()])));
     }
     if client.resolve_edits {
-        action.data = Some(argument);
+        action.data = ActionData::Script(which).encoded();
     } else {
         action.edit = Some(scripts::edit(&script));
     }
@@ -298,25 +322,27 @@ fn disabled(view: &View, name: &str, reason: String, kind: CodeActionKind) -> Op
 
 /// Returns whether finding the edit of an action may take long.
 pub(crate) fn is_long(view: &View, action: &CodeAction) -> bool {
-    let uri = action.data.as_ref().and_then(|data| data.get("uri")?.as_str()?.parse().ok());
-    uri.is_some_and(|uri| view.is_long(&uri))
+    let data = action.data.as_ref().and_then(|data| ActionData::deserialize(data).ok());
+    data.is_some_and(|data| view.is_long(data.program()))
 }
 
 /// `codeAction/resolve`: finds the edit of an action that was chosen.
 pub(crate) fn resolve(view: &View, action: &CodeAction) -> Result<CodeAction> {
     let action = action.clone();
     let Some(data) = &action.data else { return Ok(action) };
-    if let Ok(which) = serde_json::from_value::<FixAllOf>(data.clone()) {
-        let edit = Some(workspace_edit(view, &rewriting::edits(view, &which)));
-        return Ok(CodeAction { edit, ..action });
-    }
-    let which: ChosenEnvironment = serde_json::from_value(data.clone())
+    let data = ActionData::deserialize(data)
         .map_err(|error| Error::invalid_params(format!("not an action of this server: {error}")))?;
-    let script = scripts::generate(view, &which)?;
-    if let Some(error) = script.obstacle() {
-        return Err(scripts::failure(scripts::reason(&error)));
-    }
-    Ok(CodeAction { edit: Some(scripts::edit(&script)), ..action })
+    let edit = match data {
+        ActionData::FixAll(which) => workspace_edit(view, &rewriting::edits(view, &which)),
+        ActionData::Script(which) => {
+            let script = scripts::generate(view, &which)?;
+            if let Some(error) = script.obstacle() {
+                return Err(scripts::failure(scripts::reason(&error)));
+            }
+            scripts::edit(&script)
+        }
+    };
+    Ok(CodeAction { edit: Some(edit), ..action })
 }
 
 #[cfg(test)]

@@ -46,8 +46,8 @@ fn shows_references(wanted: &Wanted, kind: EntityKind) -> Option<bool> {
 #[derive(Debug, Serialize, Deserialize)]
 struct LensOf {
     uri: Uri,
-    /// As [`EntityKind::noun`] has it.
-    kind: String,
+    #[serde(with = "crate::noun")]
+    kind: EntityKind,
     name: String,
 }
 
@@ -72,8 +72,7 @@ pub(crate) fn code_lenses(view: &View, params: &CodeLensParams) -> Option<Vec<Co
             continue;
         };
         if is_shown {
-            let data =
-                LensOf { uri: uri.clone(), kind: lens.kind.noun().to_owned(), name: lens.name.to_string() };
+            let data = LensOf { uri: uri.clone(), kind: lens.kind, name: lens.name.to_string() };
             lenses.push(CodeLens { range, command: None, data: serde_json::to_value(&data).ok() });
         }
     }
@@ -110,10 +109,9 @@ pub(crate) fn resolve(view: &View, lens: &CodeLens) -> Result<CodeLens> {
     let Some(data) = &lens.data else { return Ok(lens) };
     let of: LensOf = serde_json::from_value(data.clone())
         .map_err(|error| Error::invalid_params(format!("not a lens of this server: {error}")))?;
-    let kind = EntityKind::ALL.into_iter().find(|kind| kind.noun() == of.kind);
-    let known = kind.and_then(|kind| Some((kind, view.analysed(&of.uri)?.1)));
     // A document may be closed before its lenses are resolved.
-    let places = known.map(|(kind, file)| locations(view, file, kind, &of.name)).unwrap_or_default();
+    let analysed = view.analysed(&of.uri);
+    let places = analysed.map(|(_, file)| locations(view, file, of.kind, &of.name)).unwrap_or_default();
     let title = match places.len() {
         1 => "1 reference".to_owned(),
         count => format!("{count} references"),

@@ -24,8 +24,8 @@ const MAX_DOCUMENTED: usize = 50;
 struct CompletionOf {
     /// The key of the document that declares it.
     home: String,
-    /// As [`EntityKind::noun`] has it.
-    kind: String,
+    #[serde(with = "crate::noun")]
+    kind: EntityKind,
     name: String,
 }
 
@@ -90,12 +90,9 @@ pub(crate) fn resolve(view: &View, item: &CompletionItem) -> Result<CompletionIt
     let Some(data) = &item.data else { return Ok(item) };
     let of: CompletionOf = serde_json::from_value(data.clone())
         .map_err(|error| Error::invalid_params(format!("not a completion of this server: {error}")))?;
-    let kind = EntityKind::ALL.into_iter().find(|kind| kind.noun() == of.kind);
-    let home = view.database().file(&of.home);
     // The entity may be gone.
-    let known = kind.zip(home);
-    let text = known.and_then(|(kind, home)| {
-        ide::completion_documentation(view.database(), home, kind, &of.name.as_str().into())
+    let text = view.database().file(&of.home).and_then(|home| {
+        ide::completion_documentation(view.database(), home, of.kind, &of.name.as_str().into())
     });
     Ok(CompletionItem { documentation: text.and_then(|text| documentation(view, text)), ..item })
 }
@@ -123,7 +120,7 @@ fn convert(view: &View, document: Document<'_>, completion: ide::Completion, at:
         ide::Documentation::Text(text) => item.documentation = documentation(view, text),
         ide::Documentation::Of(home, kind) if view.client.resolve_completions => {
             let home = view.database().path(home).to_owned();
-            let of = CompletionOf { home, kind: kind.noun().to_owned(), name: item.label.clone() };
+            let of = CompletionOf { home, kind, name: item.label.clone() };
             item.data = serde_json::to_value(of).ok();
         }
         ide::Documentation::Of(home, kind) if at < MAX_DOCUMENTED => {

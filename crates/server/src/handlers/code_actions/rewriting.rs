@@ -7,18 +7,17 @@ use tower_lsp::ls_types::{
     CodeAction, CodeActionDisabled, CodeActionKind, CodeActionOrCommand, CodeActionParams, Uri,
 };
 
-use super::{sentence, workspace_edit};
+use super::{ActionData, sentence, workspace_edit};
 use crate::documents::Document;
 use crate::view::View;
 
-/// The problems to fix: the data of an action until it is chosen, because computing the edits means trying them.
+/// The problems to fix.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub(crate) struct FixAllOf {
     /// The program.
     pub(crate) uri: Uri,
     /// The code of the problems; all codes where it is `None`.
-    pub(crate) fix_all: Option<String>,
+    code: Option<String>,
 }
 
 /// Every refactoring that applies to the selection; if the client shows them, also those that cannot be done, with the
@@ -100,9 +99,10 @@ fn offer(
     code: Option<&str>,
 ) -> Option<CodeActionOrCommand> {
     let action = CodeAction { title, kind: Some(kind), ..CodeAction::default() };
-    let which = FixAllOf { uri: document.uri()?, fix_all: code.map(str::to_owned) };
+    let which = FixAllOf { uri: document.uri()?, code: code.map(str::to_owned) };
     if view.client.resolve_edits {
-        return Some(CodeAction { data: serde_json::to_value(which).ok(), ..action }.into());
+        // Computing the edits means trying them.
+        return Some(CodeAction { data: ActionData::FixAll(which).encoded(), ..action }.into());
     }
     Some(CodeAction { edit: Some(workspace_edit(view, &edits(view, &which))), ..action }.into())
 }
@@ -111,7 +111,7 @@ fn offer(
 pub(super) fn edits(view: &View, which: &FixAllOf) -> Vec<Edit> {
     let Some((document, file)) = view.analysed(&which.uri) else { return Vec::new() };
     let is_meant = |problem: &Diagnostic| {
-        is_shown(document, problem) && which.fix_all.as_ref().is_none_or(|code| code == problem.code())
+        is_shown(document, problem) && which.code.as_ref().is_none_or(|code| code == problem.code())
     };
     ide::fix_all(view.database(), file, is_meant)
 }
