@@ -3,11 +3,12 @@
 use std::fmt;
 use std::fs;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::{MAIN_SEPARATOR, Path, PathBuf};
 
 use pydslrep_files::read_bytes;
 use pydslrep_script::runtime::{NAME, VERSION, files};
 use pydslrep_script::sha256;
+use walkdir::WalkDir;
 
 use crate::WriteError;
 use crate::package::{RECORD, Record};
@@ -165,8 +166,7 @@ fn inspect(path: &Path, current: &Record) -> io::Result<Found> {
         Ok(found) if !found.is_dir() => return Ok(Found::Changed(None)),
         found => found?,
     };
-    let mut found = Vec::new();
-    list(path, "", &mut found)?;
+    let found = list(path)?;
     if found.len() > MAX_FILES {
         return Ok(Found::Changed(None));
     }
@@ -207,23 +207,21 @@ struct Entry {
 }
 
 /// All files in a folder and below it, but the record and what Python caches.
-fn list(path: &Path, inside: &str, files: &mut Vec<Entry>) -> io::Result<()> {
-    for entry in fs::read_dir(path.join(inside))? {
+fn list(path: &Path) -> io::Result<Vec<Entry>> {
+    let mut files = Vec::new();
+    for entry in WalkDir::new(path).into_iter().filter_entry(|entry| entry.file_name() != CACHES) {
         let entry = entry?;
-        let (kind, name) = (entry.file_type()?, entry.file_name());
-        let name = name.to_string_lossy();
-        let name = if inside.is_empty() { name.into_owned() } else { format!("{inside}/{name}") };
-        if files.len() > MAX_FILES || name == RECORD || entry.file_name() == CACHES {
-            continue;
+        let inside = entry.path().strip_prefix(path).map_err(io::Error::other)?;
+        let name = inside.to_string_lossy().replace(MAIN_SEPARATOR, "/");
+        if !entry.file_type().is_dir() && name != RECORD {
+            files.push(Entry { is_regular: entry.file_type().is_file(), name });
         }
-        if kind.is_dir() {
-            list(path, &name, files)?;
-        } else {
-            files.push(Entry { is_regular: kind.is_file(), name });
+        if files.len() > MAX_FILES {
+            break;
         }
     }
     files.sort_by(|a, b| a.name.cmp(&b.name));
-    Ok(())
+    Ok(files)
 }
 
 /// Where the package is put.

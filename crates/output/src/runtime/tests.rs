@@ -31,8 +31,7 @@ fn make_older(path: &Path) {
 
 /// Every file of a folder by its path in it.
 fn files_in(path: &Path) -> BTreeMap<String, Vec<u8>> {
-    let mut names = Vec::new();
-    list(path, "", &mut names).unwrap();
+    let names = list(path).unwrap();
     names.into_iter().map(|file| (file.name.clone(), fs::read(path.join(file.name)).unwrap())).collect()
 }
 

@@ -7,6 +7,7 @@ use std::path::Path;
 use std::time::UNIX_EPOCH;
 
 use serde::{Deserialize, Serialize};
+use walkdir::WalkDir;
 
 const NAME: &str = "installed.json";
 
@@ -26,10 +27,16 @@ impl Stamp {
     }
 }
 
-/// Records an environment that is complete.
+/// Records an environment that is complete; Python itself writes `__pycache__`.
 pub(super) fn write(home: &Path) -> io::Result<()> {
     let mut manifest = Manifest::default();
-    collect(home, "", &mut manifest)?;
+    for entry in WalkDir::new(home).into_iter().filter_entry(|entry| entry.file_name() != "__pycache__") {
+        let entry = entry?;
+        let path = entry.path().strip_prefix(home).ok().and_then(Path::to_str);
+        if let Some(path) = path.filter(|_| entry.file_type().is_file()) {
+            manifest.0.insert(path.to_owned(), Stamp::of(&entry.metadata()?));
+        }
+    }
     fs::write(home.join(NAME), serde_json::to_vec(&manifest)?)
 }
 
@@ -42,22 +49,6 @@ pub(super) fn damage(home: &Path) -> Option<String> {
         Ok(_) => Some(format!("{path} has changed")),
         Err(_) => Some(format!("{path} is missing")),
     })
-}
-
-/// Adds the files in a folder; Python itself writes `__pycache__`.
-fn collect(home: &Path, folder: &str, manifest: &mut Manifest) -> io::Result<()> {
-    for entry in fs::read_dir(home.join(folder))? {
-        let entry = entry?;
-        let Ok(name) = entry.file_name().into_string() else { continue };
-        let path = if folder.is_empty() { name.clone() } else { format!("{folder}/{name}") };
-        let kind = entry.file_type()?;
-        if kind.is_dir() && name != "__pycache__" {
-            collect(home, &path, manifest)?;
-        } else if kind.is_file() {
-            manifest.0.insert(path, Stamp::of(&entry.metadata()?));
-        }
-    }
-    Ok(())
 }
 
 #[cfg(test)]
