@@ -5,7 +5,7 @@ use pydslrep_syntax::ast::{Entity, Name, Robot};
 use super::context::Context;
 use super::edits::ProblemEdit;
 use super::problem::Problem;
-use super::{Applicability, Page, Rule};
+use super::rule::{Applicability, Checks, Page, Rule};
 use crate::{EntityId, Severity, Target};
 
 pub(super) static RULE: Rule = Rule {
@@ -15,7 +15,7 @@ pub(super) static RULE: Rule = Rule {
     tag: None,
     applicability: Applicability::Safe,
     page: PAGE,
-    check,
+    checks: Checks::of_entity(check),
 };
 
 const PAGE: Page = Page {

@@ -3,7 +3,6 @@
 use pydslrep_syntax::ast::{Entity, References};
 use pydslrep_syntax::{Span, Token, TokenKind, escape};
 
-use super::absolute;
 use super::context::Context;
 use super::problem::{ProblemFix, Renaming};
 use crate::{Database, Edit, EntityId, FileId, FileSpan, Fix};
@@ -254,4 +253,10 @@ fn kept_apart(database: &Database, file: FileId, span: Span, text: &str) -> Stri
     let left = if runs_in && first(text) && !first(&replaced) { " " } else { "" };
     let right = if runs_on && last(text) && !last(&replaced) { " " } else { "" };
     format!("{left}{text}{right}")
+}
+
+/// Where a part of an entity is.
+pub(super) fn absolute(database: &Database, id: EntityId, span: Span) -> Option<(FileId, Span)> {
+    let entity = database.entity(id)?;
+    Some((entity.file, span.shifted(entity.span.start)))
 }

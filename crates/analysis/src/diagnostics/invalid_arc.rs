@@ -5,7 +5,7 @@ use pydslrep_syntax::ast::{ActionKind, Circle, Turn};
 use super::context::Context;
 use super::number_out_of_range::MAX_DISTANCE;
 use super::problem::Problem;
-use super::{Applicability, Page, Rule};
+use super::rule::{Applicability, Checks, Page, Rule};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
@@ -15,7 +15,7 @@ pub(super) static RULE: Rule = Rule {
     tag: None,
     applicability: Applicability::Never,
     page: PAGE,
-    check,
+    checks: Checks::of_entity(check),
 };
 
 const PAGE: Page = Page {

@@ -6,7 +6,7 @@ use pydslrep_syntax::{Span, Token};
 use super::context::Context;
 use super::edits::ProblemEdit;
 use super::problem::Problem;
-use super::{Applicability, Page, Rule};
+use super::rule::{Applicability, Checks, Page, Rule};
 use crate::Severity;
 use crate::resolve::COUNTS;
 
@@ -17,7 +17,7 @@ pub(super) static RULE: Rule = Rule {
     tag: None,
     applicability: Applicability::Safe,
     page: PAGE,
-    check,
+    checks: Checks::of_entity(check),
 };
 
 const PAGE: Page = Page {

@@ -7,7 +7,7 @@ use rustc_hash::FxHashMap;
 use super::calls;
 use super::context::Context;
 use super::problem::Problem;
-use super::{Applicability, Page, Rule};
+use super::rule::{Applicability, Checks, Page, Rule};
 use crate::summary::Time;
 use crate::{EntityId, Severity};
 
@@ -18,7 +18,7 @@ pub(super) static RULE: Rule = Rule {
     tag: None,
     applicability: Applicability::Safe,
     page: PAGE,
-    check,
+    checks: Checks::of_entity(check),
 };
 
 const PAGE: Page = Page {

@@ -2,18 +2,17 @@
 
 use std::sync::Arc;
 
-use pydslrep_scene::{ENDING, Robot, Scene};
-use pydslrep_syntax::ast::{Action, Condition, Entity, Name, SensorKeyword, Within};
-use pydslrep_syntax::{EntityKind, Span};
+use pydslrep_scene::ENDING;
+use pydslrep_syntax::EntityKind;
+use pydslrep_syntax::ast::{Action, Condition, SensorKeyword, Within};
 
 use super::context::Context;
 use super::number_out_of_range::MAX_DISTANCE;
-use super::planned_collision::PlannedRun;
+use super::planned_run::{OutOfRange, PlannedRun};
 use super::problem::Problem;
-use super::{Applicability, Page, Rule};
-use crate::environment::Environment;
+use super::rule::{Applicability, Checks, Page, Rule};
 use crate::signature::Signature;
-use crate::{Database, Diagnostic, EntityId, FileId, Severity};
+use crate::{Database, Diagnostic, FileId, Severity};
 
 pub(super) static RULE: Rule = Rule {
     code: "invalid-within",
@@ -22,7 +21,7 @@ pub(super) static RULE: Rule = Rule {
     tag: None,
     applicability: Applicability::Never,
     page: PAGE,
-    check,
+    checks: Checks::of_entity(check).and_runs(in_runs),
 };
 
 const PAGE: Page = Page {
@@ -77,57 +76,8 @@ fn problem(context: &Context<'_>, condition: &Condition, within: &Within) -> Opt
     })
 }
 
-/// A distance of a movement that is beyond what all sensors of its condition can see in a scene.
-#[derive(Debug)]
-pub(super) struct OutOfRange {
-    /// The movement that it is in.
-    movement: EntityId,
-    /// Where it is in that.
-    span: Span,
-    /// The greatest range of the sensors, metres.
-    range: f64,
-    /// The number of sensors.
-    count: usize,
-}
-
-/// The distances that are out of range in the movements of an environment, which has them in the same order.
-pub(super) fn out_of_range(
-    database: &Database,
-    environment: &Environment,
-    scene: &Scene,
-    movements: &[EntityId],
-) -> Vec<OutOfRange> {
-    let mut found = Vec::new();
-    for (&movement, resolved) in movements.iter().zip(&environment.movements) {
-        let (Some(Entity::Movement(tree)), Some(robot)) =
-            (database.tree(movement), scene.robots.get(resolved.robot))
-        else {
-            continue;
-        };
-        for condition in tree.all_actions().flat_map(Action::conditions) {
-            if let Some((span, range)) = beyond_range(condition, robot) {
-                found.push(OutOfRange { movement, span, range, count: condition.sensors.names.len() });
-            }
-        }
-    }
-    found
-}
-
-/// The distance of a condition that none of its sensors reaches, and how far they do reach. Bumpers alone are another
-/// problem.
-fn beyond_range(condition: &Condition, robot: &Robot) -> Option<(Span, f64)> {
-    let within = condition.within.as_ref()?;
-    let distance = within.distance.as_ref()?;
-    let metres = distance.value? * within.unit?.0.in_metres();
-    let sensor = |name: &Name| robot.sensors.iter().find(|sensor| sensor.name == name.text);
-    let sensors: Vec<_> = condition.sensors.names.iter().map(sensor).collect::<Option<_>>()?;
-    let measures = sensors.iter().any(|sensor| sensor.kind == pydslrep_scene::SensorKind::Distance);
-    let range = sensors.iter().map(|sensor| sensor.mount.range).fold(0.0, f64::max);
-    (measures && metres > range).then_some((distance.span, range))
-}
-
 /// The problems of the conditions of a file in the runs of its environments; each once.
-pub(super) fn in_runs(database: &Database, file: FileId, runs: &[Arc<PlannedRun>]) -> Vec<Diagnostic> {
+fn in_runs(database: &Database, file: FileId, runs: &[Arc<PlannedRun>]) -> Vec<Diagnostic> {
     let mut diagnostics: Vec<Diagnostic> = Vec::new();
     for run in runs {
         let found = run.out_of_range.iter().filter_map(|found| located(database, run, found));

@@ -4,44 +4,9 @@
 
 use pydslrep_scene::ENDING;
 
-use super::{CATALOGUE, Rule, not_in_article};
+use super::rule::{Page, Rule};
+use super::{CATALOGUE, not_in_article};
 use crate::{Absence, Database, Diagnostic, Edition, Target};
-
-/// The manual page of a rule, for a person who wants to know more than its message says.
-#[derive(Debug)]
-pub struct Page {
-    /// A description of what the rule finds.
-    pub what: &'static str,
-    /// Why that matters.
-    pub why: &'static str,
-    /// The files that the two programs import, or their scenes: names and texts.
-    pub imports: &'static [(&'static str, &'static str)],
-    /// A program with this problem, once, and with no other.
-    pub example: &'static str,
-    /// The corrected program, without any problem.
-    pub fixed: &'static str,
-}
-
-/// The best fix that a rule may offer.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Applicability {
-    /// None: only the author knows the intention.
-    Never,
-    /// One that a person should look at first.
-    Suggested,
-    /// One that can be applied without asking.
-    Safe,
-}
-
-impl Applicability {
-    fn word(self) -> &'static str {
-        match self {
-            Self::Never => "no",
-            Self::Suggested => "suggested",
-            Self::Safe => "safe",
-        }
-    }
-}
 
 impl Rule {
     /// The page in Markdown, with what the example gives rise to.
@@ -151,6 +116,7 @@ mod tests {
 
     use expect_test::expect_file;
 
+    use super::super::rule::Applicability;
     use super::*;
     use crate::diagnostics::testing::{applicability, apply};
 

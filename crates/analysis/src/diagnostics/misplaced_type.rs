@@ -5,7 +5,7 @@ use pydslrep_syntax::ast::Entity;
 
 use super::context::Context;
 use super::problem::Problem;
-use super::{Applicability, Page, Rule, Tag};
+use super::rule::{Applicability, Checks, Page, Rule, Tag};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
@@ -15,7 +15,7 @@ pub(super) static RULE: Rule = Rule {
     tag: Some(Tag::Deprecated),
     applicability: Applicability::Safe,
     page: PAGE,
-    check,
+    checks: Checks::of_entity(check),
 };
 
 const PAGE: Page = Page {

@@ -35,12 +35,15 @@ mod not_in_article;
 mod number_out_of_range;
 mod parallel_conflict;
 mod planned_collision;
+mod planned_run;
 mod port_of_other_target;
 mod problem;
 mod recursive_movement;
 mod repeated_robot;
 mod repeated_sensor;
 mod repeated_wheel;
+mod reported;
+mod rule;
 mod script_name;
 mod sensor_not_on_robot;
 mod single_parallel;
@@ -60,51 +63,13 @@ mod zero_distance;
 #[cfg(test)]
 mod testing;
 
-use pydslrep_syntax::Span;
-
-use self::consequences::Consequences;
-use self::context::Context;
-pub use self::manual::{Applicability, Page, index};
+pub use self::manual::index;
 pub use self::nested_too_deep::MAX_BLOCK_DEPTH;
 pub use self::not_in_article::beyond_article;
-pub(crate) use self::planned_collision::PlannedRun;
-use self::problem::Brace;
+pub(crate) use self::planned_run::PlannedRun;
 pub(crate) use self::problem::Problem;
-use crate::reads::Reads;
-use crate::{Database, Diagnostic, EntityId, FileId, Related, Severity};
-
-/// A way to show text besides underlining it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Tag {
-    /// It does nothing; shown faded.
-    Unnecessary,
-    /// An older spelling; shown struck through.
-    Deprecated,
-}
-
-/// A row of the catalogue.
-#[derive(Debug)]
-pub struct Rule {
-    /// Its stable name.
-    pub code: &'static str,
-    /// Its usual severity.
-    pub severity: Severity,
-    /// A summary of what it finds, in one sentence.
-    pub summary: &'static str,
-    /// The way in which an editor may show the text it is about.
-    pub tag: Option<Tag>,
-    /// The best fix it may offer.
-    pub applicability: Applicability,
-    /// The manual page, which says more than its messages.
-    pub page: Page,
-    check: fn(&Context<'_>, &mut Vec<Problem>),
-}
-
-impl PartialEq for Rule {
-    fn eq(&self, other: &Self) -> bool {
-        self.code == other.code
-    }
-}
+pub(crate) use self::reported::{in_entity, in_file, of_entities, visit_in_file};
+pub use self::rule::{Applicability, Page, Rule, Tag};
 
 impl Rule {
     /// Returns whether it is about text that is not understood, so that problems of its meaning are hidden.
@@ -176,127 +141,4 @@ pub const CATALOGUE: [&Rule; 50] = [
 /// The rule with a code.
 pub fn rule(code: &str) -> Option<&'static Rule> {
     CATALOGUE.into_iter().find(|rule| rule.code == code)
-}
-
-/// The problems of one entity, in the order of the text, and what was looked at to find them.
-pub(crate) fn in_entity(database: &Database, id: EntityId) -> (Vec<Problem>, Reads) {
-    let mut problems = Vec::new();
-    let Some(context) = Context::new(database, id) else { return (problems, Reads::default()) };
-    for rule in CATALOGUE {
-        (rule.check)(&context, &mut problems);
-    }
-    problems.sort_by_key(|problem| (problem.span.start, problem.span.end));
-    (problems, context.into_reads())
-}
-
-/// A problem of a file that is reported.
-struct Reported<'a> {
-    /// Where its entity starts.
-    start: u32,
-    problem: &'a Problem,
-    /// True for an open brace that is closed after declarations that do not belong within it.
-    is_nested: bool,
-}
-
-/// The problems of a file with absolute places.
-pub(crate) fn in_file(database: &Database, file: FileId) -> Vec<Diagnostic> {
-    let located = reported(database, file).into_iter().map(|Reported { start, problem, is_nested }| {
-        let mut diagnostic = located(database, file, start, problem);
-        if is_nested {
-            syntax_error::nested(&mut diagnostic);
-        }
-        diagnostic
-    });
-    let mut diagnostics: Vec<Diagnostic> = located.collect();
-    diagnostics.extend(no_environment::in_file(database, file));
-    diagnostics.extend(in_scenes(database, file));
-    diagnostics.sort_by_key(|diagnostic| diagnostic.span.start);
-    diagnostics
-}
-
-/// The problems that the actions of a file have in any environment with a scene. Without scenes there is nothing to do.
-fn in_scenes(database: &Database, file: FileId) -> Vec<Diagnostic> {
-    let runs = database.planned_runs(file);
-    let mut diagnostics = planned_collision::in_runs(database, file, &runs);
-    diagnostics.extend(invalid_within::in_runs(database, file, &runs));
-    diagnostics
-}
-
-/// Calls `visit` with the rule, the severity and the start of all that [`in_file`] returns, in no order; their places and
-/// fixes, which take much longer, are not looked for.
-pub(crate) fn visit_in_file(
-    database: &Database,
-    file: FileId,
-    mut visit: impl FnMut(&'static Rule, Severity, u32),
-) {
-    for Reported { start, problem, .. } in reported(database, file) {
-        visit(problem.rule, problem.severity, problem.span.shifted(start).start);
-    }
-    let of_whole = no_environment::in_file(database, file).into_iter();
-    for diagnostic in of_whole.chain(in_scenes(database, file)) {
-        visit(diagnostic.rule, diagnostic.severity, diagnostic.span.start);
-    }
-}
-
-/// The problems of a file's entities without those that only follow from others, in the order of the text.
-fn reported(database: &Database, file: FileId) -> Vec<Reported<'_>> {
-    let entities = database.entities_with_problems(file);
-    let ids: Vec<EntityId> = entities.iter().map(|entity| entity.id).collect();
-    let problems: Vec<(u32, &Problem)> = entities
-        .into_iter()
-        .flat_map(|entity| {
-            database.problems(entity.id).iter().map(move |problem| (entity.span.start, problem))
-        })
-        .collect();
-    let consequences = Consequences::new(database, file, &ids, &problems);
-    let mut reported: Vec<Reported<'_>> = Vec::with_capacity(problems.len());
-    let mut open = None;
-    for (start, problem) in problems.into_iter().filter(|(_, problem)| !consequences.include(problem)) {
-        match problem.brace {
-            Some(Brace::Unclosed) => open = Some(reported.len()),
-            // It closes what was left open before the declarations in between.
-            Some(Brace::Stray) if let Some(unclosed) = open.take() => {
-                reported[unclosed].is_nested = true;
-                continue;
-            }
-            _ => {}
-        }
-        reported.push(Reported { start, problem, is_nested: false });
-    }
-    reported
-}
-
-/// The problems of some entities, wherever they are, with absolute places.
-pub(crate) fn of_entities(database: &Database, ids: &[EntityId]) -> Vec<Diagnostic> {
-    let mut diagnostics = Vec::new();
-    for entity in ids.iter().filter_map(|id| database.entity(*id)) {
-        for problem in database.problems(entity.id) {
-            diagnostics.push(located(database, entity.file, entity.span.start, problem));
-        }
-    }
-    diagnostics
-}
-
-fn located(database: &Database, file: FileId, start: u32, problem: &Problem) -> Diagnostic {
-    let related = problem.related.iter().filter_map(|related| {
-        let (file, span) = absolute(database, related.entity, related.span)?;
-        Some(Related { file, span, message: related.message.clone() })
-    });
-    Diagnostic {
-        rule: problem.rule,
-        severity: problem.severity,
-        file,
-        span: problem.span.shifted(start),
-        message: problem.message.clone(),
-        help: problem.help.clone(),
-        note: problem.note.clone(),
-        related: related.collect(),
-        fixes: problem.fixes.iter().filter_map(|fix| edits::located(database, fix)).collect(),
-    }
-}
-
-/// Where a part of an entity is.
-fn absolute(database: &Database, id: EntityId, span: Span) -> Option<(FileId, Span)> {
-    let entity = database.entity(id)?;
-    Some((entity.file, span.shifted(entity.span.start)))
 }

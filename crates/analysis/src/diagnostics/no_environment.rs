@@ -2,9 +2,7 @@
 
 use pydslrep_syntax::{EntityKind, Span, escape};
 
-use super::context::Context;
-use super::problem::Problem;
-use super::{Applicability, Page, Rule};
+use super::rule::{Applicability, Checks, Page, Rule};
 use crate::{Database, Diagnostic, Edit, EntityRef, FileId, Fix, Severity};
 
 pub(super) static RULE: Rule = Rule {
@@ -14,7 +12,7 @@ pub(super) static RULE: Rule = Rule {
     tag: None,
     applicability: Applicability::Suggested,
     page: PAGE,
-    check,
+    checks: Checks::of_file(in_file),
 };
 
 const PAGE: Page = Page {
@@ -38,11 +36,8 @@ movement trip of rover { move 1 meters }
 environment yard has { rover } robots with { trip } moves",
 };
 
-/// It is a problem of the whole file, see [`in_file`].
-fn check(_: &Context<'_>, _: &mut Vec<Problem>) {}
-
 /// The problem, if the file has it, at its last entity.
-pub(super) fn in_file(database: &Database, file: FileId) -> Option<Diagnostic> {
+fn in_file(database: &Database, file: FileId) -> Option<Diagnostic> {
     let has = |kind| database.count(file, kind) > 0;
     let wanted = has(EntityKind::Robot)
         && has(EntityKind::Movement)

@@ -3,15 +3,12 @@
 use std::sync::Arc;
 
 use pydslrep_kinematics::{ActionIndex, Place};
-use pydslrep_scene::{Collision, ENDING, Scene, SceneObject, collisions};
+use pydslrep_scene::{Collision, ENDING, SceneObject};
 use pydslrep_syntax::ast::Entity;
 
-use super::context::Context;
-use super::invalid_within::{self, OutOfRange};
-use super::problem::Problem;
-use super::{Applicability, Page, Rule};
-use crate::environment::Environment;
-use crate::{Database, Diagnostic, EntityId, FileId, Related, Severity, plan};
+use super::planned_run::PlannedRun;
+use super::rule::{Applicability, Checks, Page, Rule};
+use crate::{Database, Diagnostic, FileId, Related, Severity};
 
 pub(super) static RULE: Rule = Rule {
     code: "planned-collision",
@@ -20,7 +17,7 @@ pub(super) static RULE: Rule = Rule {
     tag: None,
     applicability: Applicability::Never,
     page: PAGE,
-    check,
+    checks: Checks::of_runs(in_runs),
 };
 
 const PAGE: Page = Page {
@@ -58,59 +55,13 @@ movement trip of rover {
 environment yard has { rover } robots with { trip } moves",
 };
 
-/// It takes a whole environment, see [`in_runs`].
-fn check(_: &Context<'_>, _: &mut Vec<Problem>) {}
-
 /// The problems of the actions of a file in the runs of its environments.
-pub(super) fn in_runs(database: &Database, file: FileId, runs: &[Arc<PlannedRun>]) -> Vec<Diagnostic> {
+fn in_runs(database: &Database, file: FileId, runs: &[Arc<PlannedRun>]) -> Vec<Diagnostic> {
     let problems = runs.iter().flat_map(|run| {
         let located = Located { database, run };
         run.collisions.iter().filter_map(move |collision| located.problem(collision))
     });
     problems.filter(|problem| problem.file == file).collect()
-}
-
-/// The planned run of an environment in its scene; it names no places, so that it holds as long as the environment
-/// does.
-#[derive(Debug)]
-pub(crate) struct PlannedRun {
-    environment: Environment,
-    scene: Scene,
-    /// As in the environment.
-    movements: Vec<EntityId>,
-    collisions: Vec<Collision>,
-    pub(super) out_of_range: Vec<OutOfRange>,
-}
-
-impl PlannedRun {
-    /// `None` where the environment or the scene has errors: those come first.
-    pub(crate) fn new(database: &Database, id: EntityId) -> Option<Self> {
-        let (environment, movements) = database.resolved(id)?;
-        let scene = database.scene(id, &environment).ok()?;
-        let plan = plan(&environment, &scene).ok()?;
-        let collisions = collisions(&scene, &plan);
-        let out_of_range = invalid_within::out_of_range(database, &environment, &scene, &movements);
-        Some(Self { environment, scene, movements, collisions, out_of_range })
-    }
-
-    /// Returns whether it has problems.
-    pub(crate) fn has_problems(&self) -> bool {
-        !self.collisions.is_empty() || !self.out_of_range.is_empty()
-    }
-
-    /// The name of the environment.
-    pub(super) fn environment(&self) -> &str {
-        &self.environment.name
-    }
-
-    fn name(&self, object: SceneObject) -> &str {
-        match object {
-            SceneObject::Robot(robot) => self.scene.robots.get(robot).map_or("", |robot| &robot.name),
-            SceneObject::Obstacle(obstacle) => {
-                self.scene.obstacles.get(obstacle).map_or("", |obstacle| &obstacle.name)
-            }
-        }
-    }
 }
 
 /// The same with the places as they are now.

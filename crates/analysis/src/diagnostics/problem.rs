@@ -3,8 +3,8 @@
 use pydslrep_syntax::{EntityKind, Span};
 use smol_str::SmolStr;
 
-use super::Rule;
 use super::edits::ProblemEdit;
+use super::rule::Rule;
 use crate::{EntityId, Severity};
 
 /// A problem whose places count from the start of the entities they are in, so that it stays true wherever those

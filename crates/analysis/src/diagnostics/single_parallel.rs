@@ -5,7 +5,7 @@ use pydslrep_syntax::ast::{Entity, Environment, Name};
 
 use super::context::Context;
 use super::problem::Problem;
-use super::{Applicability, Page, Rule, Tag};
+use super::rule::{Applicability, Checks, Page, Rule, Tag};
 use crate::signature::Signature;
 use crate::{EntityId, Severity};
 
@@ -16,7 +16,7 @@ pub(super) static RULE: Rule = Rule {
     tag: Some(Tag::Unnecessary),
     applicability: Applicability::Suggested,
     page: PAGE,
-    check,
+    checks: Checks::of_entity(check),
 };
 
 const PAGE: Page = Page {

@@ -10,7 +10,7 @@ use smol_str::SmolStr;
 use super::context::Context;
 use super::edits::ProblemEdit;
 use super::problem::Problem;
-use super::{Applicability, Page, Rule};
+use super::rule::{Applicability, Checks, Page, Rule};
 use crate::{Resolution, Severity};
 
 pub(super) static RULE: Rule = Rule {
@@ -20,7 +20,7 @@ pub(super) static RULE: Rule = Rule {
     tag: None,
     applicability: Applicability::Suggested,
     page: PAGE,
-    check,
+    checks: Checks::of_entity(check),
 };
 
 const PAGE: Page = Page {

@@ -5,8 +5,8 @@ use pydslrep_syntax::ast::{Drive, Entity, Name, Robot};
 
 use super::context::Context;
 use super::problem::Problem;
+use super::rule::{Applicability, Checks, Page, Rule};
 use super::wheel_count::{fitting, in_words, type_place};
-use super::{Applicability, Page, Rule};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
@@ -16,7 +16,7 @@ pub(super) static RULE: Rule = Rule {
     tag: None,
     applicability: Applicability::Safe,
     page: PAGE,
-    check,
+    checks: Checks::of_entity(check),
 };
 
 const PAGE: Page = Page {

@@ -4,8 +4,8 @@ use pydslrep_syntax::ast::{Entity, Name};
 
 use super::context::Context;
 use super::problem::Problem;
+use super::rule::{Applicability, Checks, Page, Rule};
 use super::wheel_count::wheel_orders;
-use super::{Applicability, Page, Rule};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
@@ -15,7 +15,7 @@ pub(super) static RULE: Rule = Rule {
     tag: None,
     applicability: Applicability::Suggested,
     page: PAGE,
-    check,
+    checks: Checks::of_entity(check),
 };
 
 const PAGE: Page = Page {

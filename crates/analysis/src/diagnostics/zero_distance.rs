@@ -4,7 +4,7 @@ use pydslrep_syntax::ast::ActionKind;
 
 use super::context::Context;
 use super::problem::Problem;
-use super::{Applicability, Page, Rule, Tag};
+use super::rule::{Applicability, Checks, Page, Rule, Tag};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
@@ -14,7 +14,7 @@ pub(super) static RULE: Rule = Rule {
     tag: Some(Tag::Unnecessary),
     applicability: Applicability::Safe,
     page: PAGE,
-    check,
+    checks: Checks::of_entity(check),
 };
 
 const PAGE: Page = Page {

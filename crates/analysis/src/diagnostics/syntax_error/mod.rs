@@ -17,7 +17,7 @@ pub(super) use self::rewrite::{Rewrite, find as rewrites};
 use self::words::{listed, shape, worth_listing};
 use super::context::Context;
 use super::problem::{Brace, Problem, Renaming};
-use super::{Applicability, Page, Rule};
+use super::rule::{Applicability, Checks, Page, Rule};
 use crate::{Diagnostic, Resolution, Severity};
 
 pub(super) static RULE: Rule = Rule {
@@ -27,7 +27,7 @@ pub(super) static RULE: Rule = Rule {
     tag: None,
     applicability: Applicability::Safe,
     page: PAGE,
-    check,
+    checks: Checks::of_entity(check),
 };
 
 const PAGE: Page = Page {
