@@ -3,7 +3,11 @@
 use std::net::Ipv4Addr;
 
 use pydslrep_kinematics::{ActionIndex, Drive, Place};
+
 pub use pydslrep_scene::{Mount, Objects, Ros2, Ros2Value, SensorKind};
+
+/// The allowed numbers of rounds of a block.
+pub const COUNTS: std::ops::RangeInclusive<f64> = 1.0..=10_000.0;
 
 /// One environment, ready to run. Indices refer to the vectors of this struct.
 #[derive(Debug, Clone, PartialEq)]

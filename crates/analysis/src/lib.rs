@@ -9,6 +9,7 @@
 
 mod cancellation;
 mod database;
+mod defaults;
 mod diagnostic;
 pub mod diagnostics;
 mod edition;
@@ -30,12 +31,14 @@ mod target;
 
 pub use cancellation::{CancellationToken, Cancelled, cancellable, check_cancelled};
 pub use database::{Absence, Database, EditCounts, EntityId, EntityRef, FileId, FileSpan, Resolution};
+pub use defaults::DEFAULT_ANGLE;
 pub use diagnostic::{Diagnostic, Edit, Fix, Related, Severity};
 pub use diagnostics::MAX_BLOCK_DEPTH;
 pub use edition::Edition;
+pub use environment::COUNTS;
 pub use fix_validator::{FixValidator, Offers};
 pub use fixing::Fixing;
 pub use plan::{Driver, plan, plan_movement, reach, scene, summary_of_movement};
-pub use resolve::{Blocked, COUNTS, DEFAULT_ANGLE, Fingerprint, KnownStatements};
+pub use resolve::{Blocked, Fingerprint, KnownStatements};
 pub use snapshot::Snapshot;
 pub use target::Target;

@@ -6,7 +6,7 @@ use pydslrep_scene as scenery;
 use kinematics::StepKind;
 
 use crate::environment::{
-    Circle, Condition, Environment, Movement, ResolvedAction, ResolvedActionKind, Robot,
+    COUNTS, Circle, Condition, Environment, Movement, ResolvedAction, ResolvedActionKind, Robot,
 };
 
 /// The distance that a robot drives until a condition holds, metres: a `move` fails after that, and loops hardly go
@@ -113,7 +113,7 @@ fn way_of(action: &ResolvedAction, done: &[f64]) -> f64 {
         ResolvedActionKind::Slam => SLAM_EXTENT,
         ResolvedActionKind::Repeat { count, body } => f64::from(*count) * way_of_all(body, done),
         ResolvedActionKind::RepeatUntil { body, .. } => {
-            OPEN_ENDED_EXTENT.min(way_of_all(body, done) * *crate::resolve::COUNTS.end())
+            OPEN_ENDED_EXTENT.min(way_of_all(body, done) * *COUNTS.end())
         }
         ResolvedActionKind::If { branches, otherwise } => {
             let branches = branches.iter().map(|branch| branch.body.as_slice());

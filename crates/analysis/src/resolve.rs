@@ -10,9 +10,10 @@ use pydslrep_syntax::ast::{self, ActionKind as Statement, Entity, Name};
 use pydslrep_syntax::{EntityKind, Parse, Span, TokenKind};
 use rustc_hash::{FxHashMap, FxHashSet};
 
+use crate::defaults::{DEFAULT_ANGLE, drive};
 use crate::environment::{
-    Branch, Circle, Condition, Environment, Movement, Objects, ResolvedAction, ResolvedActionKind, Robot,
-    Ros2, Sensor, Source, Wheel,
+    Branch, COUNTS, Circle, Condition, Environment, Movement, Objects, ResolvedAction, ResolvedActionKind,
+    Robot, Ros2, Sensor, Source, Wheel,
 };
 use crate::{
     Database, Diagnostic, EntityId, EntityRef, FileId, Severity, check_cancelled, diagnostics, plan,
@@ -230,20 +231,6 @@ impl Database {
             Entity::Wheel(wheel) => Some(wheel),
             _ => None,
         })
-    }
-}
-
-/// The type of a robot whose wheels are those that `wheel` finds by their names.
-pub(crate) fn drive<'a>(
-    robot: &ast::Robot,
-    wheel: impl Fn(&Name) -> Option<&'a ast::Wheel>,
-) -> Option<Drive> {
-    let wheels = &robot.wheels.as_ref()?.names;
-    let is_mecanum = |name: &Name| wheel(name).is_some_and(|wheel| wheel.mecanum);
-    let all_mecanum = |count: usize| wheels.len() == count && wheels.iter().all(is_mecanum);
-    match robot.drive.map(|clause| clause.word) {
-        Some(word) => word.map(|drive| drive.driven(|| all_mecanum(drive.wheel_count()))),
-        None => Drive::inferred(wheels.len(), || all_mecanum(wheels.len())),
     }
 }
 
@@ -580,9 +567,6 @@ fn count(number: &ast::Number) -> Option<u32> {
     Some(value as u32)
 }
 
-/// The allowed numbers of rounds of a block.
-pub const COUNTS: std::ops::RangeInclusive<f64> = 1.0..=10_000.0;
-
 /// Returns the kind of a statement that has no blocks and does no movement.
 fn simple_kind(statement: &Statement, sensors: &[Sensor]) -> Option<ResolvedActionKind> {
     let until = |clause: &Option<ast::Until>| match clause {
@@ -660,9 +644,6 @@ fn speed(clause: Option<&ast::SpeedClause>) -> Option<f64> {
         None => Some(motion::RIM_SPEED),
     }
 }
-
-/// The angle of a `turn` without one, in degrees.
-pub const DEFAULT_ANGLE: f64 = 90.0;
 
 /// Metres. Centimetres are divided, not multiplied, so that `400 centimeters` is exactly 4.
 fn length(number: &ast::Number, unit: Option<(ast::Unit, Span)>) -> Option<f64> {

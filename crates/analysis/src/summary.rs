@@ -6,8 +6,8 @@ use pydslrep_kinematics::{Drive, Model, SpeedProfile, Twist, motion};
 use pydslrep_syntax::ast::{self, Action, ActionKind, Entity, Repeat, Rounds};
 use smol_str::SmolStr;
 
+use crate::defaults::DEFAULT_ANGLE;
 use crate::plan::default_model;
-use crate::resolve::DEFAULT_ANGLE;
 
 /// Robots of default size, in the order of [`Drive::ALL`]. Each action asks them, with each key.
 static MODELS: LazyLock<[Option<Model>; Drive::ALL.len()]> = LazyLock::new(|| Drive::ALL.map(default_model));

@@ -9,8 +9,8 @@ use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
 
 use super::syntax_error::{self, Rewrite};
+use crate::defaults::drive;
 use crate::reads::Reads;
-use crate::resolve::drive;
 use crate::script_name::ScriptName;
 use crate::signature::{MovementSignature, Signature};
 use crate::summary::Summary;

@@ -8,7 +8,7 @@ use super::edits::ProblemEdit;
 use super::problem::Problem;
 use super::rule::{Applicability, Checks, Page, Rule};
 use crate::Severity;
-use crate::resolve::COUNTS;
+use crate::environment::COUNTS;
 
 pub(super) static RULE: Rule = Rule {
     code: "invalid-count",

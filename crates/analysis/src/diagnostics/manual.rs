@@ -4,8 +4,9 @@
 
 use pydslrep_scene::ENDING;
 
+use super::catalogue::CATALOGUE;
+use super::not_in_article;
 use super::rule::{Page, Rule};
-use super::{CATALOGUE, not_in_article};
 use crate::{Absence, Database, Diagnostic, Edition, Target};
 
 impl Rule {

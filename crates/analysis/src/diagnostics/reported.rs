@@ -1,11 +1,12 @@
 //! What is reported: the problems of entities without those that only follow from others, with absolute places.
 
+use super::catalogue::CATALOGUE;
 use super::consequences::Consequences;
 use super::context::Context;
 use super::edits::{self, absolute};
 use super::problem::{Brace, Problem};
 use super::rule::Rule;
-use super::{CATALOGUE, syntax_error};
+use super::syntax_error;
 use crate::reads::Reads;
 use crate::{Database, Diagnostic, EntityId, FileId, Related, Severity};
 
