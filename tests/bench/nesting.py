@@ -1,9 +1,10 @@
 """What a key costs in a movement with blocks and in one without, counted in instructions of the server.
 
-    python3 tests/bench/nesting.py [--words 100,200,350] target/release/pydslrep-lsp
+    python3 tests/bench/nesting.py [--words 100,200,350] [--lines 10000] target/release/pydslrep-lsp
 
 needs valgrind. Both movements have as many words, and other load on the machine does not matter. A key makes an error or
-removes it, and the diagnostics are requested after each.
+removes it, and the diagnostics are requested after each; where completion is measured, a list too. With `--lines`, more
+movements of the same kind follow, until the program has that many lines.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ import pathlib
 import re
 import tempfile
 
-from client import Client
+from client import URI, Client
 
 HEAD = """\
 wheel l with radius 3.5
@@ -40,7 +41,12 @@ BLOCKS = (
 )
 # Of each dozen lines, those that open a block and those that close one.
 OPENS, CLOSES = (0, 3), (7, 10)
-EDITS = {"syntax error": ("meters", 5), "broken reference": ("until { front", 13)}
+COMPLETION = "completion"
+EDITS = {
+    "syntax error": ("meters", 5),
+    "broken reference": ("until { front", 13),
+    COMPLETION: ("until { front", 13),
+}
 """What a line has whose character at that place is taken away and typed again."""
 # Words of a block that is worth opening: an empty one has a warning.
 MIN_WORDS = 20
@@ -90,7 +96,7 @@ def instructions(server: pathlib.Path, text: str, edit: str, keys: int) -> int:
         command = [*valgrind, f"--log-file={log}", str(server.resolve()), "--stdio"]
         client = Client(command, max_wait=SLOW)
         client.open(text)
-        type_keys(client, keys, *place_of(text, edit))
+        type_keys(client, keys, *place_of(text, edit), completes=edit == COMPLETION)
         client.ask("shutdown", None)
         client.tell("exit", None)
         client.process.wait(timeout=SLOW)
@@ -100,9 +106,9 @@ def instructions(server: pathlib.Path, text: str, edit: str, keys: int) -> int:
 
 
 def place_of(text: str, edit: str) -> tuple[int, int, str]:
-    """The line and the column of a letter in the middle of a movement, and the letter."""
+    """The line and the column of a letter in the middle of the first movement, and the letter."""
     part, offset = EDITS[edit]
-    lines = text.splitlines()
+    lines = text.split("\n}\n", 1)[0].splitlines()
     fitting = [
         number
         for number, line in enumerate(lines)
@@ -113,7 +119,9 @@ def place_of(text: str, edit: str) -> tuple[int, int, str]:
     return line, start, lines[line][start]
 
 
-def type_keys(client: Client, keys: int, line: int, start: int, letter: str) -> None:
+def type_keys(
+    client: Client, keys: int, line: int, start: int, letter: str, *, completes: bool
+) -> None:
     """Takes a letter away and types it again, by turns; the answers must have an error, and none."""
     for key in range(keys):
         if key % 2 == 0:
@@ -122,11 +130,31 @@ def type_keys(client: Client, keys: int, line: int, start: int, letter: str) -> 
             client.change(line, start, start, letter)
         found, _ = client.settled([])
         assert found == [line] * (key % 2 == 0), found
+        if completes and key % 2 == 0:
+            complete(client, line, start - 1)
 
 
-def per_key(server: pathlib.Path, movement: str, edit: str) -> float:
+def complete(client: Client, line: int, column: int) -> None:
+    """Asks for the list within what is left of a sensor's name, as a user does; it must have the name."""
+    place = {"line": line, "character": column}
+    parameters = {"textDocument": {"uri": URI}, "position": place}
+    found, _ = client.ask("textDocument/completion", parameters)
+    assert [item["label"] for item in found["items"]] == ["front"], found
+
+
+def program(movement: str, lines: int) -> str:
+    """A program of at least that many lines: the movement as `m`, and again under other names."""
+    head, tail = f"{HEAD}{movement}", TAIL
+    more = -(-max(lines - f"{head}{tail}".count("\n"), 0) // (movement.count("\n") + 2))
+    names = [f"m{number}" for number in range(more)]
+    others = [f"}}\nmovement {name} of rover {{\n{movement}" for name in names]
+    return "".join(
+        [head, *others, tail.replace("{ m }", f"{{ {' '.join(['m', *names])} }}")]
+    )
+
+
+def per_key(server: pathlib.Path, text: str, edit: str) -> float:
     """Thousands of instructions; what a server takes besides its keys does not count."""
-    text = f"{HEAD}{movement}{TAIL}"
     few, many = (instructions(server, text, edit, keys) for keys in (FEW, MANY))
     return (many - few) / (MANY - FEW) / 1000.0
 
@@ -136,10 +164,12 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n", 1)[0])
     parser.add_argument("server", type=pathlib.Path)
     parser.add_argument("--words", default="100,200,350")
+    parser.add_argument("--lines", type=int, default=0, help="of the program")
     options = parser.parse_args()
     print(f"{'thousands of instructions per key':36} {'flat':>8} {'nested':>8} ratio")
     for edit, size in itertools.product(EDITS, map(int, options.words.split(","))):
-        costs = [per_key(options.server, kind(size), edit) for kind in (flat, nested)]
+        texts = [program(kind(size), options.lines) for kind in (flat, nested)]
+        costs = [per_key(options.server, text, edit) for text in texts]
         ratio = costs[1] / costs[0]
         row = f"{edit}, {size} words"
         print(f"{row:36} {costs[0]:8.0f} {costs[1]:8.0f} {ratio:5.2f}", flush=True)
