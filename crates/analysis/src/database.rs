@@ -1,128 +1,42 @@
-//! The database: files in, answers out. How it changes is in [`change`].
+//! The database: files in, answers out. It keeps true what rules conclude from the [facts](Facts): the problems of all
+//! entities and the planned runs. How it changes is in [`change`].
 
-mod absences;
+mod batch;
 mod change;
 #[cfg(test)]
 mod counts;
-mod imports;
-mod reads;
-mod references;
+mod dependencies;
+mod environments;
+mod postponed;
+mod problems;
+mod scene_run;
 mod scenes;
-mod scripts;
-
-pub use self::absences::Absence;
-use self::absences::Absences;
-pub use self::references::FileSpan;
 
 use std::collections::BTreeMap;
-use std::sync::Arc;
+use std::ops::Deref;
 
-use pydslrep_syntax::ast::Entity;
-use pydslrep_syntax::{EntityKind, Parse, Span, TokenKind};
-use ropey::Rope;
 use rustc_hash::{FxHashMap, FxHashSet};
-use smallvec::SmallVec;
 use smol_str::SmolStr;
 
-use self::imports::{Imports, Postponed};
-use self::scenes::Scenes;
-use self::scripts::ScriptNames;
-use crate::diagnostics::{self, Problem};
-use crate::file::File;
-use crate::names::Names;
-use crate::reads::Reads;
-use crate::slots::EntitySlot;
-use crate::{Diagnostic, Edition, Target, check_cancelled};
-
-/// A file of the database; the same for the same path, also after closing and opening it again.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct FileId(u32);
-
-/// An entity of the database; it keeps its id while edits leave its kind and place alone.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct EntityId(u32);
-
-/// The result of looking a name up.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Resolution {
-    /// This entity; the first of several that bear the name.
-    To(EntityId),
-    /// Not known: the name is in invalid text, or an imported file is missing.
-    Unknown,
-    /// Nothing.
-    Nothing,
-}
-
-impl Resolution {
-    /// The entity, if there is one.
-    pub fn entity(self) -> Option<EntityId> {
-        match self {
-            Self::To(entity) => Some(entity),
-            Self::Unknown | Self::Nothing => None,
-        }
-    }
-}
-
-/// An entity with its place.
-#[derive(Debug, Clone, Copy)]
-pub struct EntityRef<'a> {
-    /// Its id.
-    pub id: EntityId,
-    /// Its file.
-    pub file: FileId,
-    /// From its first byte to where the next entity starts.
-    pub span: Span,
-    /// The tree (`None` for the text before the first entity), tokens and errors; their spans count from
-    /// `span.start`.
-    pub parse: &'a Parse,
-}
-
-#[derive(Debug, Clone)]
-struct EntityData {
-    file: FileId,
-    /// Grows through the file; only its order means anything.
-    order: u64,
-    parse: Arc<Parse>,
-    problems: Vec<Problem>,
-    /// The names and entities that they come from.
-    reads: Reads,
-    /// The entities whose rules read this one's signature.
-    readers: SmallVec<[EntityId; 4]>,
-    /// The entities whose rules read this one's summary.
-    summary_readers: SmallVec<[EntityId; 4]>,
-}
+use self::dependencies::Dependencies;
+use self::postponed::Postponed;
+use self::problems::Problems;
+use self::scene_run::SceneRun;
+use crate::diagnostics::{self, EntityProblems, Rule};
+use crate::entity::{EntityId, FileId};
+use crate::facts::Facts;
+use crate::{Diagnostic, Severity};
 
 /// Documents and everything known about them. A clone shares texts and trees, so that something can be tried on it.
 #[derive(Debug, Clone, Default)]
 pub struct Database {
-    files: Vec<Option<File>>,
-    by_path: FxHashMap<String, FileId>,
-    entities: Vec<Option<EntityData>>,
-    free: Vec<u32>,
-    names: Names,
-    /// The number of entities of a kind in a file, named or not.
-    counts: FxHashMap<(FileId, EntityKind), u32>,
-    /// Only of files that import anything.
-    imports: FxHashMap<FileId, Imports>,
-    /// The files that import a path: the reverse of `imports`.
-    importers: FxHashMap<String, FxHashSet<FileId>>,
-    /// Why what a file imports is not there, as far as this is known.
-    absences: Absences,
-    /// The targets of scripts, where they are not the usual one. Kept while a file is closed.
-    targets: FxHashMap<FileId, Target>,
-    /// Which statements a file may have, where it is not the usual edition. Kept while a file is closed.
-    editions: FxHashMap<FileId, Edition>,
-    /// Scenes of environments by their names. Kept while a file is closed.
-    scenes: BTreeMap<FileId, Scenes>,
+    facts: Facts,
+    problems: Problems,
+    dependencies: Dependencies,
+    /// The planned runs of the environments that have a scene, by their names.
+    runs: BTreeMap<FileId, BTreeMap<SmolStr, SceneRun>>,
     /// Changes in the number of declarations of an environment's name since they were last read; no entry is 0.
     changed_environments: FxHashMap<(FileId, SmolStr), i32>,
-    script_names: ScriptNames,
-    /// Entities with problems.
-    with_problems: FxHashMap<FileId, FxHashSet<EntityId>>,
-    /// Entities with a problem whose fix renames them, also in the files that import theirs.
-    renamed: FxHashMap<FileId, FxHashSet<EntityId>>,
-    /// Entities whose problems speak of all names of a kind ("did you mean …"), not only of those they use.
-    name_dependents: FxHashSet<EntityId>,
     last_edit: EditCounts,
     /// The files whose diagnostics may have changed since they were last asked for.
     touched: FxHashSet<FileId>,
@@ -141,50 +55,19 @@ pub struct EditCounts {
     pub revalidated: usize,
 }
 
+/// Whatever can be asked of the facts can be asked of the database; they change through it alone.
+impl Deref for Database {
+    type Target = Facts;
+
+    fn deref(&self) -> &Facts {
+        &self.facts
+    }
+}
+
 impl Database {
     /// An empty database.
     pub fn new() -> Self {
         Self::default()
-    }
-
-    /// An open file by its path.
-    pub fn file(&self, path: &str) -> Option<FileId> {
-        self.by_path.get(path).copied().filter(|file| self.get(*file).is_some())
-    }
-
-    /// All open files, in the order of opening.
-    pub fn files(&self) -> impl Iterator<Item = FileId> + '_ {
-        (0..).map(FileId).zip(&self.files).filter(|(_, file)| file.is_some()).map(|(id, _)| id)
-    }
-
-    /// The path a file was opened by; empty for a closed file.
-    pub fn path(&self, file: FileId) -> &str {
-        self.get(file).map_or("", |file| &file.path)
-    }
-
-    /// The text of a file; `None` for a closed one.
-    pub fn text(&self, file: FileId) -> Option<&Rope> {
-        self.get(file).map(|file| &file.text)
-    }
-
-    /// A part of a file's text; empty where it does not fit.
-    pub fn slice(&self, file: FileId, span: Span) -> String {
-        self.get(file).map_or_else(String::new, |file| file.slice(span))
-    }
-
-    /// The line ending a file uses.
-    pub fn line_ending(&self, file: FileId) -> &'static str {
-        self.get(file).map_or("\n", File::line_ending)
-    }
-
-    /// Returns the target of a file's scripts.
-    pub fn target(&self, file: FileId) -> Target {
-        self.targets.get(&file).copied().unwrap_or_default()
-    }
-
-    /// Which statements a file may have.
-    pub fn edition(&self, file: FileId) -> Edition {
-        self.editions.get(&file).copied().unwrap_or_default()
     }
 
     /// Returns the cost of the latest edit (or opening).
@@ -192,149 +75,16 @@ impl Database {
         self.last_edit
     }
 
-    /// The entities of a file in the order of the text; also what is before the first.
-    pub fn entities(&self, file: FileId) -> impl Iterator<Item = EntityRef<'_>> {
-        let slots = self.get(file).map_or(&[][..], |file| &file.slots);
-        slots
-            .iter()
-            .scan(0, move |start, slot| {
-                let span = Span::new(*start, *start + slot.len);
-                *start = span.end;
-                Some((slot.entity, span))
-            })
-            .filter_map(|(id, span)| {
-                check_cancelled();
-                self.data(id).map(|data| EntityRef { id, file: data.file, span, parse: &data.parse })
-            })
-    }
-
-    /// The entities of a file from the one that holds an offset on, in the order of the text.
-    pub fn entities_from(&self, file: FileId, offset: u32) -> impl Iterator<Item = EntityRef<'_>> {
-        let (index, start) = self.slot_at(file, offset);
-        let slots = self.slots(file).get(index..).unwrap_or_default();
-        let located = slots.iter().scan(start, move |start, slot| {
-            let span = Span::new(*start, *start + slot.len);
-            *start = span.end;
-            Some((slot.entity, span))
-        });
-        located.filter_map(|(id, span)| {
-            check_cancelled();
-            self.data(id).map(|data| EntityRef { id, file: data.file, span, parse: &data.parse })
-        })
-    }
-
-    /// The entity that holds an offset: at a boundary the one after it, at the end of the text the last one.
-    pub fn entity_at(&self, file: FileId, offset: u32) -> Option<EntityRef<'_>> {
-        let open = self.get(file)?;
-        let (index, start) = open.slots.at(offset);
-        let slot = open.slots.get(index)?;
-        let data = self.data(slot.entity)?;
-        Some(EntityRef {
-            id: slot.entity,
-            file,
-            span: Span::new(start, start + slot.len),
-            parse: &data.parse,
-        })
-    }
-
-    /// The entities next to an offset, at most so many on either side of the one that holds it, in the order of the text:
-    /// their number does not follow the length of the file.
-    pub fn entities_around(&self, file: FileId, offset: u32, reach: usize) -> impl Iterator<Item = EntityId> {
-        let (index, _) = self.slot_at(file, offset);
-        let slots = self.slots(file);
-        let around = index.saturating_sub(reach)..(index + reach + 1).min(slots.len());
-        slots.get(around).unwrap_or_default().iter().map(|slot| slot.entity)
-    }
-
-    /// An entity with its place.
-    pub fn entity(&self, id: EntityId) -> Option<EntityRef<'_>> {
-        check_cancelled();
-        let data = self.data(id)?;
-        let open = self.get(data.file)?;
-        let index = open.slots.partition_point(|slot| self.order(slot.entity) < data.order);
-        let slot = open.slots.get(index).filter(|slot| slot.entity == id)?;
-        let start = open.slots.start_of(index);
-        let span = Span::new(start, start + slot.len);
-        Some(EntityRef { id, file: data.file, span, parse: &data.parse })
-    }
-
-    pub(crate) fn parse(&self, id: EntityId) -> Option<&Parse> {
-        self.data(id).map(|data| &*data.parse)
-    }
-
-    pub(crate) fn shared_parse(&self, id: EntityId) -> Option<&Arc<Parse>> {
-        self.data(id).map(|data| &data.parse)
-    }
-
-    /// The slot that holds an offset, and where it starts.
-    pub(crate) fn slot_at(&self, file: FileId, offset: u32) -> (usize, u32) {
-        self.get(file).map_or((0, 0), |file| file.slots.at(offset))
-    }
-
-    pub(crate) fn slots(&self, file: FileId) -> &[EntitySlot] {
-        self.get(file).map_or(&[], |file| &file.slots)
-    }
-
-    /// An entity's tree, without its place.
-    pub fn tree(&self, id: EntityId) -> Option<&Entity> {
-        self.data(id)?.parse.entity.as_ref()
-    }
-
-    /// The file an entity is in.
-    pub fn file_of(&self, id: EntityId) -> Option<FileId> {
-        self.data(id).map(|data| data.file)
-    }
-
-    /// Resolves a name in a file: to its first declaration in it, else to one in the files it imports.
-    pub fn resolve(&self, file: FileId, kind: EntityKind, name: &SmolStr) -> Resolution {
-        if let Some(first) = self.names.defined(&(file, kind, name.clone())).first() {
-            return Resolution::To(*first);
-        }
-        let mut unknown = self.names.is_skipped(file, name) || self.lacks_imports(file);
-        for imported in self.imported_files(file) {
-            if let Some(first) = self.names.defined(&(imported, kind, name.clone())).first() {
-                return Resolution::To(*first);
-            }
-            unknown |= self.names.is_skipped(imported, name);
-        }
-        if unknown { Resolution::Unknown } else { Resolution::Nothing }
-    }
-
-    /// All declarations of a name in one file, in the order of the text.
-    pub fn definitions(&self, file: FileId, kind: EntityKind, name: &SmolStr) -> &[EntityId] {
-        self.names.defined(&(file, kind, name.clone()))
-    }
-
-    /// The entities of one file that use a name, in no order.
-    pub fn users(&self, file: FileId, kind: EntityKind, name: &SmolStr) -> &[EntityId] {
-        self.names.used(&(file, kind, name.clone()))
-    }
-
-    /// Every name of a kind that a file sees, in no order, some perhaps more than once.
-    pub fn names_in_sight(&self, file: FileId, kind: EntityKind) -> impl Iterator<Item = &SmolStr> {
-        let files = std::iter::once(file).chain(self.imported_files(file));
-        files.flat_map(move |file| self.names.all(file, kind))
-    }
-
-    /// Returns whether a file or one of its imports declares a name of a kind.
-    pub(crate) fn is_in_sight(&self, file: FileId, kind: EntityKind, name: &SmolStr) -> bool {
-        let mut files = std::iter::once(file).chain(self.imported_files(file));
-        files.any(|file| !self.definitions(file, kind, name).is_empty())
-    }
-
-    /// The declared names of a kind in a file, in no order.
-    pub fn names(&self, file: FileId, kind: EntityKind) -> impl Iterator<Item = &SmolStr> {
-        self.names.all(file, kind)
-    }
-
-    /// The names of environments of a file that are the same as `name` except for case, itself included, in no order.
-    pub(crate) fn environments_but_for_case(&self, file: FileId, name: &SmolStr) -> &[SmolStr] {
-        self.names.environments_but_for_case(file, name)
-    }
-
     /// Returns the diagnostics of a file, in the order of the text.
     pub fn diagnostics(&self, file: FileId) -> Vec<Diagnostic> {
-        diagnostics::in_file(self, file)
+        diagnostics::in_file(&self.facts, file, &self.problems_in(file), &self.planned_runs(file))
+    }
+
+    /// Calls `visit` with the rule, the severity and the start of all [diagnostics](Self::diagnostics) of a file, in no
+    /// order; their places and fixes, which take much longer, are not looked for.
+    pub(crate) fn visit_diagnostics(&self, file: FileId, visit: impl FnMut(&'static Rule, Severity, u32)) {
+        let runs = self.planned_runs(file);
+        diagnostics::visit_in_file(&self.facts, file, &self.problems_in(file), &runs, visit);
     }
 
     /// The files whose diagnostics, or places named in them, may have changed since this was last asked; in the order
@@ -351,54 +101,30 @@ impl Database {
         !self.touched.is_empty()
     }
 
+    /// The environments whose names came or went since this was last asked: each by its file and name. Also those of
+    /// files that were closed.
+    pub fn take_changed_environments(&mut self) -> Vec<(FileId, SmolStr)> {
+        let changed = std::mem::take(&mut self.changed_environments);
+        let mut changed: Vec<(FileId, SmolStr)> = changed.into_keys().collect();
+        changed.sort_unstable();
+        changed
+    }
+
     /// Returns the number of entities of a file that have problems.
     pub fn count_with_problems(&self, file: FileId) -> usize {
-        self.with_problems.get(&file).map_or(0, FxHashSet::len)
+        self.problems.in_file(file).len()
     }
 
-    /// Returns the number of entities of a kind in a file.
-    pub fn count(&self, file: FileId, kind: EntityKind) -> u32 {
-        self.counts.get(&(file, kind)).copied().unwrap_or(0)
+    /// The entities of a file that have problems, with these, in the order of the text.
+    fn problems_in(&self, file: FileId) -> Vec<EntityProblems<'_>> {
+        let mut located = self.located_problems(self.problems.in_file(file));
+        located.sort_unstable_by_key(|located| located.entity.span.start);
+        located
     }
 
-    /// Returns whether a name is in text of the file that had to be skipped.
-    pub(crate) fn is_skipped(&self, file: FileId, name: &SmolStr) -> bool {
-        self.names.is_skipped(file, name)
-    }
-
-    /// Returns whether skipped text of the file contains names that may be declarations.
-    pub(crate) fn has_skipped_names(&self, file: FileId) -> bool {
-        self.names.any_skipped(file)
-    }
-
-    /// Returns whether the file ends inside a comment, which may hide declarations.
-    pub(crate) fn has_open_comment(&self, file: FileId) -> bool {
-        let last = self.get(file).and_then(|file| file.slots.last()).and_then(|slot| self.data(slot.entity));
-        last.and_then(|data| data.parse.tokens.last())
-            .is_some_and(|(token, _)| *token == TokenKind::UnterminatedComment)
-    }
-
-    /// The entities of a file that have problems, in the order of the text.
-    pub(crate) fn entities_with_problems(&self, file: FileId) -> Vec<EntityRef<'_>> {
-        let ids = self.with_problems.get(&file).into_iter().flatten();
-        let mut entities: Vec<EntityRef<'_>> = ids.filter_map(|id| self.entity(*id)).collect();
-        entities.sort_unstable_by_key(|entity| entity.span.start);
-        entities
-    }
-
-    pub(crate) fn problems(&self, id: EntityId) -> &[Problem] {
-        self.data(id).map_or(&[], |data| &data.problems)
-    }
-
-    pub(crate) fn order(&self, id: EntityId) -> u64 {
-        self.data(id).map_or(0, |data| data.order)
-    }
-
-    fn get(&self, file: FileId) -> Option<&File> {
-        self.files.get(file.0 as usize)?.as_ref()
-    }
-
-    fn data(&self, id: EntityId) -> Option<&EntityData> {
-        self.entities.get(id.0 as usize)?.as_ref()
+    /// Some entities with their problems.
+    fn located_problems(&self, ids: impl IntoIterator<Item = EntityId>) -> Vec<EntityProblems<'_>> {
+        let located = |id| Some(EntityProblems { entity: self.entity(id)?, problems: self.problems.of(id) });
+        ids.into_iter().filter_map(located).collect()
     }
 }

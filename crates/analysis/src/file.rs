@@ -5,7 +5,7 @@ use std::ops::Range;
 use pydslrep_syntax::{LOOKAHEAD, Parse, Span, TokenKind, cut, lex, parse, parse_cut};
 use ropey::Rope;
 
-use crate::EntityId;
+use crate::entity::EntityId;
 use crate::slots::EntitySlots;
 
 /// One document.
@@ -143,6 +143,18 @@ fn shift(offset: u32, by: i64) -> u32 {
 /// Returns the number of tokens in some entities.
 fn token_count(parses: &[(Span, Parse)]) -> usize {
     parses.iter().map(|(_, parse)| parse.tokens.len()).sum()
+}
+
+/// The nearest range that fits the text and cuts no character.
+pub(crate) fn fit(text: &Rope, span: Span) -> Span {
+    let whole = Span::of_rope(text);
+    let snap = |offset: u32| {
+        let offset = offset.min(whole.end) as usize;
+        let character = text.byte_to_char(offset);
+        u32::try_from(text.char_to_byte(character)).unwrap_or(whole.end)
+    };
+    let start = snap(span.start);
+    Span::new(start, snap(span.end.max(span.start)))
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::{Database, Diagnostic, Edit, FileId, Fix, Severity, diagnostics};
+use crate::{Database, Diagnostic, Edit, FileId, Fix, Severity};
 
 /// The maximum number of steps for trying suggestions, each about as long as looking at one problem: as one suggestion
 /// takes longer the more problems a file has, all of them would take the square of their number. It is a second.
@@ -99,7 +99,7 @@ impl FixValidator {
         let of_text = problem.rule.is_of_text();
         let mut found = Found::default();
         for file in files {
-            diagnostics::visit_in_file(&self.tried, *file, |rule, severity, start| {
+            self.tried.visit_diagnostics(*file, |rule, severity, start| {
                 self.steps += 1;
                 let is_like_it = rule == problem.rule;
                 if is_like_it || (severity > Severity::Hint && (!of_text || rule.is_of_text())) {
@@ -150,7 +150,7 @@ mod tests {
         let held = held.collect();
         assert_eq!(validator.tried.diagnostics(file), problems);
         let mut visited = Vec::new();
-        diagnostics::visit_in_file(&database, file, |rule, severity, start| {
+        database.visit_diagnostics(file, |rule, severity, start| {
             visited.push((start, rule.code, severity));
         });
         visited.sort_unstable();

@@ -7,16 +7,21 @@
 //! so an edit re-reads only the entities it touches, and answers again only for those and for the ones that use a name
 //! whose meaning changed. Whatever is asked of a database that was edited equals what a fresh one would answer.
 
+mod blocked;
 mod cancellation;
 mod database;
 mod defaults;
 mod diagnostic;
 pub mod diagnostics;
 mod edition;
+mod entity;
 pub mod environment;
+mod facts;
 mod file;
+mod fingerprint;
 mod fix_validator;
 mod fixing;
+mod keys;
 mod names;
 pub mod path;
 mod plan;
@@ -29,16 +34,20 @@ mod snapshot;
 mod summary;
 mod target;
 
+pub use blocked::Blocked;
 pub use cancellation::{CancellationToken, Cancelled, cancellable, check_cancelled};
-pub use database::{Absence, Database, EditCounts, EntityId, EntityRef, FileId, FileSpan, Resolution};
+pub use database::{Database, EditCounts};
 pub use defaults::DEFAULT_ANGLE;
 pub use diagnostic::{Diagnostic, Edit, Fix, Related, Severity};
 pub use diagnostics::MAX_BLOCK_DEPTH;
 pub use edition::Edition;
+pub use entity::{EntityId, EntityRef, FileId, FileSpan, Resolution};
 pub use environment::COUNTS;
+pub use facts::{Absence, Facts};
+pub use fingerprint::Fingerprint;
 pub use fix_validator::{FixValidator, Offers};
 pub use fixing::Fixing;
 pub use plan::{Driver, plan, plan_movement, reach, scene, summary_of_movement};
-pub use resolve::{Blocked, Fingerprint, KnownStatements};
+pub use resolve::KnownStatements;
 pub use snapshot::Snapshot;
 pub use target::Target;

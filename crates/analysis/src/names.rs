@@ -7,10 +7,8 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use smallvec::SmallVec;
 use smol_str::SmolStr;
 
-use crate::{EntityId, FileId};
-
-/// A name of one kind as seen from one file.
-pub(crate) type Key = (FileId, EntityKind, SmolStr);
+use crate::entity::{EntityId, FileId};
+use crate::keys::Key;
 
 /// The index of names over all files. Names of different files never meet here; what an import makes visible is
 /// looked up file by file.
@@ -37,8 +35,6 @@ struct Mentions {
     defined: Entities,
     /// Each as often as it uses the name.
     used: Entities,
-    /// Those whose rules looked the name up, though they neither declare nor use it.
-    readers: Entities,
 }
 
 impl Names {
@@ -52,10 +48,10 @@ impl Names {
         self.known.get(key).map_or(&[], |mentions| &mentions.used)
     }
 
-    /// The entities that declare a name, use it or looked it up.
+    /// The entities that declare or use a name.
     pub(crate) fn mentions(&self, key: &Key) -> impl Iterator<Item = EntityId> {
         let mentions = self.known.get(key).into_iter();
-        mentions.flat_map(|it| it.defined.iter().chain(&it.used).chain(&it.readers)).copied()
+        mentions.flat_map(|it| it.defined.iter().chain(&it.used)).copied()
     }
 
     /// Every declared name of a kind in a file, in no order.
@@ -120,21 +116,11 @@ impl Names {
         self.remove(key, |mentions| remove(&mut mentions.used, entity));
     }
 
-    /// Adds one who looked a name up.
-    pub(crate) fn add_reader(&mut self, key: Key, entity: EntityId) {
-        self.known.entry(key).or_default().readers.push(entity);
-    }
-
-    /// Removes one who looked a name up.
-    pub(crate) fn remove_reader(&mut self, key: &Key, entity: EntityId) {
-        self.remove(key, |mentions| remove(&mut mentions.readers, entity));
-    }
-
     /// Changes where a name occurs, and forgets a name that occurs nowhere.
     fn remove(&mut self, key: &Key, change: impl FnOnce(&mut Mentions)) {
         if let Some(mentions) = self.known.get_mut(key) {
             change(mentions);
-            if mentions.defined.is_empty() && mentions.used.is_empty() && mentions.readers.is_empty() {
+            if mentions.defined.is_empty() && mentions.used.is_empty() {
                 self.known.remove(key);
             }
         }

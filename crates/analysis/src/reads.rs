@@ -3,8 +3,8 @@
 use pydslrep_syntax::EntityKind;
 use smallvec::SmallVec;
 
-use crate::EntityId;
-use crate::names::Key;
+use crate::entity::EntityId;
+use crate::keys::Key;
 
 /// Where an entity's problems come from, beside the entity itself, the names it declares or uses (the index of names has
 /// those), and the facts of its file that invalidate the whole file when they change. When one of these changes, the

@@ -1,13 +1,11 @@
 //! From an environment's declaration to everything it runs, with every name resolved.
 
-use std::cell::OnceCell;
 use std::hash::Hash;
-use std::sync::Arc;
 
 use pydslrep_kinematics::{Drive, motion};
 use pydslrep_scene::{Scene, SensorKind};
 use pydslrep_syntax::ast::{self, ActionKind as Statement, Entity, Name};
-use pydslrep_syntax::{EntityKind, Parse, Span, TokenKind};
+use pydslrep_syntax::{EntityKind, Span, TokenKind};
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::defaults::{DEFAULT_ANGLE, drive};
@@ -15,49 +13,9 @@ use crate::environment::{
     Branch, COUNTS, Circle, Condition, Environment, Movement, Objects, ResolvedAction, ResolvedActionKind,
     Robot, Ros2, Sensor, Source, Wheel,
 };
-use crate::{
-    Database, Diagnostic, EntityId, EntityRef, FileId, Severity, check_cancelled, diagnostics, plan,
-};
+use crate::{EntityId, EntityRef, Facts, FileId, check_cancelled, plan};
 
-/// Why an environment cannot run.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Blocked {
-    /// The environment's name.
-    pub environment: String,
-    /// The errors in it and in everything it uses; never empty. Shared, as many environments may be blocked by the same.
-    pub errors: Arc<[Diagnostic]>,
-}
-
-impl Blocked {
-    /// It in one sentence.
-    pub fn reason(&self) -> String {
-        let more = match self.errors.len() {
-            0 | 1 => String::new(),
-            count => format!(" (and {} more)", count - 1),
-        };
-        let first = self.errors.first().map_or("it is not complete", |error| &error.message);
-        format!("`{}` has errors: {first}{more}", self.environment)
-    }
-}
-
-/// All that an environment is made of, itself and its scene included. As long as two of them are equal, so is what follows
-/// from the environment: its script, its path, and what that meets.
-#[derive(Debug, Clone)]
-pub struct Fingerprint {
-    parts: Vec<(EntityId, Arc<Parse>)>,
-    scene: Option<Arc<str>>,
-}
-
-impl PartialEq for Fingerprint {
-    /// A part that was read again counts as changed.
-    fn eq(&self, other: &Self) -> bool {
-        self.scene == other.scene
-            && self.parts.len() == other.parts.len()
-            && self.parts.iter().zip(&other.parts).all(|(a, b)| a.0 == b.0 && Arc::ptr_eq(&a.1, &b.1))
-    }
-}
-
-impl Database {
+impl Facts {
     /// The environments of a file in the order of the text: each with its name and where it is.
     pub fn environments(&self, file: FileId) -> Vec<(EntityId, Name)> {
         let environments = self.entities(file).filter_map(|entity| match &entity.parse.entity {
@@ -70,71 +28,25 @@ impl Database {
         environments.collect()
     }
 
-    /// An environment ready to run.
-    ///
-    /// # Errors
-    /// When it or anything it uses has errors.
-    pub fn environment(&self, id: EntityId) -> Result<Environment, Blocked> {
-        self.environment_or(id, &OnceCell::new())
+    /// The entities that one is made of: itself, and all that it names, near or far.
+    pub(crate) fn reached_from(&self, id: EntityId) -> Vec<EntityId> {
+        Parts { facts: self, file: self.file_of(id) }.reached_from(id)
     }
 
-    /// Several environments ready to run, in the order asked for; the error is as for [`Self::environment`].
-    pub fn ready_environments(
-        &self,
-        ids: impl IntoIterator<Item = EntityId>,
-    ) -> Vec<Result<Environment, Blocked>> {
-        let all_errors = OnceCell::new();
-        ids.into_iter().map(|id| self.environment_or(id, &all_errors)).collect()
+    /// An environment with every name resolved; `None` where something that it needs is missing or broken.
+    pub(crate) fn resolved_environment(&self, id: EntityId) -> Option<Environment> {
+        Parts { facts: self, file: self.file_of(id) }.environment(id)
     }
 
-    /// `all_errors` keeps those of all files, once they are needed.
-    fn environment_or(
-        &self,
-        id: EntityId,
-        all_errors: &OnceCell<Arc<[Diagnostic]>>,
-    ) -> Result<Environment, Blocked> {
-        let parts = Parts { database: self, file: self.file_of(id) };
-        let name =
-            self.tree(id).and_then(Entity::name).map_or_else(String::new, |name| name.text.to_string());
-        let is_error = |diagnostic: &Diagnostic| diagnostic.severity == Severity::Error;
-        let mut errors = diagnostics::of_entities(self, &parts.reached_from(id));
-        errors.retain(is_error);
-        if !errors.is_empty() {
-            return Err(Blocked { environment: name, errors: errors.into() });
-        }
-        // Otherwise a declaration it needs is hidden in text that was not understood; those errors are the cause.
-        let hidden = || self.files().flat_map(|file| self.diagnostics(file)).filter(is_error).collect();
-        let environment = parts.environment(id).map(|environment| self.with_scene(id, environment));
-        environment
-            .ok_or_else(|| Blocked { environment: name, errors: Arc::clone(all_errors.get_or_init(hidden)) })
-    }
-
-    /// Returns the fingerprint of an environment, to be compared with a later one; `None` where it has errors.
-    pub fn fingerprint(&self, id: EntityId) -> Option<Fingerprint> {
-        let reached = Parts { database: self, file: self.file_of(id) }.reached_from(id);
-        let problems = reached.iter().flat_map(|id| self.problems(*id));
-        if problems.into_iter().any(|problem| problem.severity == Severity::Error) {
-            return None;
-        }
-        let parse = |id: EntityId| Some((id, Arc::clone(self.shared_parse(id)?)));
-        let parts = reached.into_iter().map(parse).collect::<Option<_>>()?;
-        Some(Fingerprint { parts, scene: self.scene_text(id).cloned() })
-    }
-
-    /// An environment without errors, and the entities of its movements in its order.
-    pub(crate) fn resolved(&self, id: EntityId) -> Option<(Environment, Vec<EntityId>)> {
-        let parts = Parts { database: self, file: self.file_of(id) };
-        let errors = diagnostics::of_entities(self, &parts.reached_from(id));
-        if errors.iter().any(|diagnostic| diagnostic.severity == Severity::Error) {
-            return None;
-        }
-        Some((parts.environment(id)?, parts.movements(id)?))
+    /// The entities of the movements of an environment, in its order.
+    pub(crate) fn movements_of(&self, id: EntityId) -> Option<Vec<EntityId>> {
+        Parts { facts: self, file: self.file_of(id) }.movements(id)
     }
 
     /// The robots of an environment on an empty floor, whatever is wrong with its movements; `None` where a robot is
     /// missing or broken.
     pub fn floor(&self, id: EntityId) -> Option<Scene> {
-        let parts = Parts { database: self, file: self.file_of(id) };
+        let parts = Parts { facts: self, file: self.file_of(id) };
         let Entity::Environment(tree) = self.tree(id)? else { return None };
         let robots = parts.resolve_all(id, EntityKind::Robot, &tree.robots.as_ref()?.names)?;
         let robots =
@@ -144,7 +56,7 @@ impl Database {
 
     /// A robot with all its parts; `None` where one is missing or broken.
     pub fn robot(&self, id: EntityId) -> Option<Robot> {
-        Parts { database: self, file: self.file_of(id) }.robot(id)
+        Parts { facts: self, file: self.file_of(id) }.robot(id)
     }
 
     /// A movement after those that it does, with its robot, whose index in all of them is 0; `None` where something is
@@ -159,7 +71,7 @@ impl Database {
     /// The same with the first `count` actions at most, and of those only the ones before the first that is broken: what
     /// is known of a movement while it is being written.
     pub fn movement_start(&self, id: EntityId, count: usize) -> Option<(Robot, Vec<Movement>)> {
-        let parts = Parts { database: self, file: self.file_of(id) };
+        let parts = Parts { facts: self, file: self.file_of(id) };
         let Entity::Movement(tree) = self.tree(id)? else { return None };
         let robot = parts.robot(parts.resolve(id, EntityKind::Robot, tree.robot.as_ref()?)?)?;
         let entity = self.entity(id)?;
@@ -179,14 +91,14 @@ impl Database {
 
     /// The robot that a movement names; `None` where it is missing or broken.
     pub fn robot_of(&self, movement: EntityId) -> Option<Robot> {
-        let parts = Parts { database: self, file: self.file_of(movement) };
+        let parts = Parts { facts: self, file: self.file_of(movement) };
         let Entity::Movement(tree) = self.tree(movement)? else { return None };
         parts.robot(parts.resolve(movement, EntityKind::Robot, tree.robot.as_ref()?)?)
     }
 
     /// Returns the statements of a movement known so far, driven by this robot, while it is being written.
     pub fn known_statements(&self, movement: EntityId, robot: Option<&Robot>) -> Option<KnownStatements<'_>> {
-        let parts = Parts { database: self, file: self.file_of(movement) };
+        let parts = Parts { facts: self, file: self.file_of(movement) };
         let Entity::Movement(tree) = self.tree(movement)? else { return None };
         let entity = self.entity(movement)?;
         let done = robot.map(|robot| parts.known_done(movement, tree, robot)).unwrap_or_default();
@@ -200,7 +112,7 @@ impl Database {
     fn done_movements(&self, ids: &[EntityId], robot: &Robot) -> Option<Vec<Movement>> {
         let places = indices_of(ids);
         let movement = |id: &EntityId| {
-            let parts = Parts { database: self, file: self.file_of(*id) };
+            let parts = Parts { facts: self, file: self.file_of(*id) };
             parts.movement(*id, |_| Some((0, robot)), &places)
         };
         ids.iter().map(movement).collect()
@@ -208,19 +120,12 @@ impl Database {
 
     /// An action as the program writes it, on one line, without comments; its place counts from its entity's start.
     pub fn action_text(&self, entity: &EntityRef<'_>, action: Span) -> String {
-        Parts { database: self, file: None }.folded_text(entity, action)
+        Parts { facts: self, file: None }.folded_text(entity, action)
     }
 
     /// The same of an action without its blocks: [`ResolvedAction::text`].
     pub fn action_head(&self, entity: &EntityRef<'_>, action: &ast::Action) -> String {
         self.action_text(entity, head(action.span, action.blocks().next()))
-    }
-
-    /// Where the errors of an entity are in its file.
-    pub fn errors(&self, entity: &EntityRef<'_>) -> impl Iterator<Item = Span> {
-        let errors = self.problems(entity.id).iter().filter(|problem| problem.severity == Severity::Error);
-        let start = entity.span.start;
-        errors.map(move |problem| problem.span.shifted(start))
     }
 
     /// The wheel layout of a robot: its type, else what its wheels make it. Four mecanum wheels are never `fw`.
@@ -236,7 +141,7 @@ impl Database {
 
 /// Builds the parts of an environment; `None` wherever one is missing or broken.
 struct Parts<'a> {
-    database: &'a Database,
+    facts: &'a Facts,
     /// The environment's own file.
     file: Option<FileId>,
 }
@@ -248,11 +153,11 @@ impl<'a> Parts<'a> {
         let mut next = 0;
         while let Some(&id) = reached.get(next) {
             next += 1;
-            let (Some(file), Some(tree)) = (self.database.file_of(id), self.database.tree(id)) else {
+            let (Some(file), Some(tree)) = (self.facts.file_of(id), self.facts.tree(id)) else {
                 continue;
             };
             for (kind, name) in tree.references() {
-                if let Some(id) = self.database.resolve(file, kind, &name.text).entity()
+                if let Some(id) = self.facts.resolve(file, kind, &name.text).entity()
                     && seen.insert(id)
                 {
                     reached.push(id);
@@ -263,7 +168,7 @@ impl<'a> Parts<'a> {
     }
 
     fn environment(&self, id: EntityId) -> Option<Environment> {
-        let Entity::Environment(tree) = self.database.tree(id)? else { return None };
+        let Entity::Environment(tree) = self.facts.tree(id)? else { return None };
         let name = tree.name.as_ref()?;
         let host = match &tree.ip {
             Some(clause) => Some(self.host(id, clause.name.as_ref()?)?),
@@ -280,21 +185,21 @@ impl<'a> Parts<'a> {
         let robot = |id| robot_places.get(&id).map(|&index| (index, &robots[index]));
         Some(Environment {
             name: name.text.to_string(),
-            script: self.database.script_name(self.file?, &name.text)?.0.stem,
+            script: self.facts.script_name(self.file?, &name.text)?.0.stem,
             host,
             movements: movement_ids
                 .iter()
                 .map(|id| self.movement(*id, robot, &places))
                 .collect::<Option<_>>()?,
             schedule: self.schedule(&runs, &places),
-            source: self.source(&self.database.entity(id)?, 0)?,
+            source: self.source(&self.facts.entity(id)?, 0)?,
             robots,
         })
     }
 
     /// The movements of an environment, in its order.
     fn movements(&self, id: EntityId) -> Option<Vec<EntityId>> {
-        let Entity::Environment(tree) = self.database.tree(id)? else { return None };
+        let Entity::Environment(tree) = self.facts.tree(id)? else { return None };
         let listed = tree.movements.as_ref().map_or(&[][..], |list| &list.names);
         self.with_done(&without_repeats(&self.resolve_all(id, EntityKind::Movement, listed)?))
     }
@@ -335,7 +240,7 @@ impl<'a> Parts<'a> {
             names.filter_map(|name| self.resolve(movement, EntityKind::Movement, name)).collect();
         let is_known = |id: &EntityId| {
             let done = self.with_done(&[*id]).filter(|done| !done.contains(&movement));
-            done.and_then(|done| self.database.done_movements(&done, robot)).is_some()
+            done.and_then(|done| self.facts.done_movements(&done, robot)).is_some()
         };
         let known: Vec<EntityId> = without_repeats(&named).into_iter().filter(is_known).collect();
         self.with_done(&known).unwrap_or_default()
@@ -343,7 +248,7 @@ impl<'a> Parts<'a> {
 
     /// The movements that one does, the first one last.
     fn done_by(&self, movement: EntityId) -> Option<Vec<EntityId>> {
-        let Entity::Movement(tree) = self.database.tree(movement)? else { return None };
+        let Entity::Movement(tree) = self.facts.tree(movement)? else { return None };
         let names = tree.all_actions().filter_map(ast::Action::done);
         let mut done: Vec<EntityId> =
             names.map(|name| self.resolve(movement, EntityKind::Movement, name)).collect::<Option<_>>()?;
@@ -353,7 +258,7 @@ impl<'a> Parts<'a> {
 
     fn host(&self, environment: EntityId, name: &Name) -> Option<std::net::Ipv4Addr> {
         let id = self.resolve(environment, EntityKind::Ip, name)?;
-        let Entity::Ip(ip) = self.database.tree(id)? else { return None };
+        let Entity::Ip(ip) = self.facts.tree(id)? else { return None };
         let octets: Option<Vec<u8>> =
             ip.address.as_ref()?.0.split('.').map(|octet| octet.parse().ok()).collect();
         let octets: [u8; 4] = octets?.try_into().ok()?;
@@ -362,14 +267,14 @@ impl<'a> Parts<'a> {
 
     /// Maximal runs of parallel movements, each a group; any other movement is a group by itself.
     fn schedule(&self, runs: &[EntityId], movements: &FxHashMap<EntityId, usize>) -> Vec<Vec<usize>> {
-        let parallel = |id: &EntityId| matches!(self.database.tree(*id), Some(Entity::Movement(movement)) if movement.parallel.is_some());
+        let parallel = |id: &EntityId| matches!(self.facts.tree(*id), Some(Entity::Movement(movement)) if movement.parallel.is_some());
         let groups = runs.chunk_by(|before, after| parallel(before) && parallel(after));
         groups.map(|group| group.iter().filter_map(|id| movements.get(id).copied()).collect()).collect()
     }
 
     fn robot(&self, id: EntityId) -> Option<Robot> {
-        let Entity::Robot(tree) = self.database.tree(id)? else { return None };
-        let drive = self.database.drive(id)?;
+        let Entity::Robot(tree) = self.facts.tree(id)? else { return None };
+        let drive = self.facts.drive(id)?;
         let wheels = self.resolve_all(id, EntityKind::Wheel, &tree.wheels.as_ref()?.names)?;
         let sensors = tree.sensors.as_ref().map_or(&[][..], |list| &list.names);
         let sensors = without_repeats(&self.resolve_all(id, EntityKind::Sensor, sensors)?);
@@ -383,18 +288,18 @@ impl<'a> Parts<'a> {
             objects: Objects::new(),
             ros2: Ros2::new(),
             mounts: Vec::new(),
-            source: self.source(&self.database.entity(id)?, 0)?,
+            source: self.source(&self.facts.entity(id)?, 0)?,
         })
     }
 
     fn wheel(&self, id: EntityId) -> Option<Wheel> {
-        let Entity::Wheel(wheel) = self.database.tree(id)? else { return None };
+        let Entity::Wheel(wheel) = self.facts.tree(id)? else { return None };
         let radius = wheel.radius.as_ref()?.value? / 100.0;
         Some(Wheel { name: wheel.name.as_ref()?.text.to_string(), radius })
     }
 
     fn sensor(&self, id: EntityId) -> Option<Sensor> {
-        let Entity::Sensor(sensor) = self.database.tree(id)? else { return None };
+        let Entity::Sensor(sensor) = self.facts.tree(id)? else { return None };
         let kind = match sensor.kind {
             Some((ast::SensorKeyword::Bumper, _)) => SensorKind::Bumper,
             Some((ast::SensorKeyword::Distance, _)) | None => SensorKind::Distance,
@@ -409,16 +314,16 @@ impl<'a> Parts<'a> {
         robot: impl Fn(EntityId) -> Option<(usize, &'r Robot)>,
         places: &FxHashMap<EntityId, usize>,
     ) -> Option<Movement> {
-        let Entity::Movement(tree) = self.database.tree(id)? else { return None };
+        let Entity::Movement(tree) = self.facts.tree(id)? else { return None };
         let (robot, Robot { sensors, .. }) =
             robot(self.resolve(id, EntityKind::Robot, tree.robot.as_ref()?)?)?;
-        let entity = self.database.entity(id)?;
+        let entity = self.facts.entity(id)?;
         let mut statements = Statements { parts: self, entity, sensors, places, number: 0 };
         Some(Movement {
             name: tree.name.as_ref()?.text.to_string(),
             robot,
             actions: statements.actions(&tree.actions)?,
-            source: self.source(&self.database.entity(id)?, 0)?,
+            source: self.source(&self.facts.entity(id)?, 0)?,
         })
     }
 
@@ -433,13 +338,13 @@ impl<'a> Parts<'a> {
             if !text.is_empty() && *token != TokenKind::Comma {
                 text.push(' ');
             }
-            text += &self.database.slice(entity.file, place.shifted(entity.span.start));
+            text += &self.facts.slice(entity.file, place.shifted(entity.span.start));
         }
         text
     }
 
     fn resolve(&self, from: EntityId, kind: EntityKind, name: &Name) -> Option<EntityId> {
-        self.database.resolve(self.database.file_of(from)?, kind, &name.text).entity()
+        self.facts.resolve(self.facts.file_of(from)?, kind, &name.text).entity()
     }
 
     fn resolve_all(&self, from: EntityId, kind: EntityKind, names: &'a [Name]) -> Option<Vec<EntityId>> {
@@ -447,8 +352,8 @@ impl<'a> Parts<'a> {
     }
 
     fn source(&self, entity: &EntityRef<'_>, offset: u32) -> Option<Source> {
-        let line = self.database.text(entity.file)?.byte_to_line((entity.span.start + offset) as usize) + 1;
-        let path = self.database.path(entity.file);
+        let line = self.facts.text(entity.file)?.byte_to_line((entity.span.start + offset) as usize) + 1;
+        let path = self.facts.path(entity.file);
         let file =
             (Some(entity.file) != self.file).then(|| path.rsplit('/').next().unwrap_or(path).to_owned());
         Some(Source { file, line: u32::try_from(line).ok()? })
@@ -673,6 +578,7 @@ fn indices_of(ids: &[EntityId]) -> FxHashMap<EntityId, usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{Blocked, Database};
 
     fn only(program: &str) -> Result<Environment, Blocked> {
         let mut database = Database::new();
@@ -755,28 +661,5 @@ environment e with ip here has { ^left q q } robots with { m n o m } moves";
     fn a_declaration_hidden_by_a_mistake_blocks_it() {
         let program = "weel a with radius 4 wheel b with radius 4 robot r with port 1 has { a b } wheels environment e has { r } robots";
         assert_eq!(only(program).unwrap_err().errors[0].code(), "syntax-error");
-    }
-
-    #[test]
-    fn only_what_an_environment_uses_changes_it() {
-        let mut database = Database::new();
-        let program = "sensor far wheel a with radius 4 robot r with port 1 has { a b } wheels\n\
-                       movement m of r { move 1 meters at 18 } environment e has { r } robots with { m } moves\n\
-                       wheel b with radius 4";
-        let file = database.open("test.pyr", program);
-        let id = database.environments(file)[0].0;
-        let fingerprint = |database: &Database| database.fingerprint(id);
-        let before = fingerprint(&database);
-        assert!(before.is_some());
-        database.edit(file, Span::at(7), "very_");
-        assert_eq!(fingerprint(&database), before, "nobody uses this sensor");
-        database.edit(file, Span::at(0), "\n\nsensor new robot x has { } ");
-        assert_eq!(fingerprint(&database), before, "nor that one, and what is wrong with a robot is its own");
-        let text = database.text(file).unwrap().to_string();
-        let speed = u32::try_from(text.find("at 18").unwrap()).unwrap() + 3;
-        database.edit(file, Span::new(speed, speed + 2), "19");
-        assert_ne!(fingerprint(&database), before);
-        database.edit(file, Span::new(speed, speed + 2), "0");
-        assert_eq!(fingerprint(&database), None, "no speed");
     }
 }

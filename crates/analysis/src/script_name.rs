@@ -1,9 +1,14 @@
 //! The names of the scripts of a program's environments.
 
-use std::sync::LazyLock;
+use std::sync::{Arc, LazyLock, OnceLock};
 
+use pydslrep_syntax::EntityKind;
 use pydslrep_text::file_names::is_reserved_on_windows;
 use rustc_hash::{FxHashMap, FxHashSet};
+use smol_str::SmolStr;
+
+use crate::entity::{EntityId, FileId};
+use crate::keys::Key;
 
 /// Modules of Python 3.11 to 3.14.
 static STANDARD_MODULES: LazyLock<FxHashSet<&str>> =
@@ -44,6 +49,31 @@ pub(crate) struct ScriptName {
     pub(crate) stem: String,
     /// Why it is not the environment's name.
     pub(crate) obstacle: Option<Obstacle>,
+}
+
+/// The names of the scripts of files, each kept until an environment of the file comes, goes or is renamed.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct ScriptNames(FxHashMap<FileId, OnceLock<Arc<NamesOfFile>>>);
+
+/// The names of the scripts of one file.
+#[derive(Debug)]
+pub(crate) struct NamesOfFile {
+    pub(crate) environments: Vec<EntityId>,
+    pub(crate) by_name: FxHashMap<SmolStr, ScriptName>,
+}
+
+impl ScriptNames {
+    /// Those of a file that has, or had, environments; filled once they are needed.
+    pub(crate) fn of(&self, file: FileId) -> Option<&OnceLock<Arc<NamesOfFile>>> {
+        self.0.get(&file)
+    }
+
+    /// Notes that a declaration comes or goes.
+    pub(crate) fn forget(&mut self, (file, kind, _): &Key) {
+        if *kind == EntityKind::Environment {
+            self.0.insert(*file, OnceLock::new());
+        }
+    }
 }
 
 /// Why a script cannot be called like its environment.

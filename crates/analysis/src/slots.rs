@@ -2,7 +2,7 @@
 
 use std::ops::{Deref, Range};
 
-use crate::EntityId;
+use crate::entity::EntityId;
 
 /// Where an entity is in its file, without its absolute position: that would change with every edit before it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use pydslrep_syntax::{Parse, Span};
 use ropey::Rope;
 
-use crate::{CancellationToken, Database, EntityId, EntityRef, FileId};
+use crate::{CancellationToken, EntityId, EntityRef, Facts, FileId};
 
 /// A file, or a part of it, as it was. It shares text and trees with the database, so it costs little to take and to
 /// keep.
@@ -25,7 +25,7 @@ struct Kept {
     parse: Arc<Parse>,
 }
 
-impl Database {
+impl Facts {
     /// A file as it is now, or the entities of it that touch a range; `None` for a closed file.
     pub fn snapshot(&self, file: FileId, range: Option<Span>) -> Option<Snapshot> {
         let text = self.text(file)?.clone();
@@ -107,6 +107,7 @@ impl Snapshot {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Database;
 
     const TEXT: &str = "wheel a with radius 4\nsensor s\nsensor t\n";
 

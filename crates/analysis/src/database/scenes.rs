@@ -1,97 +1,30 @@
-//! Scenes of environments: files beside programs, supplied by the caller that can read them.
+//! Scenes, and the planned runs in them, whose problems depend on everything that an environment sees.
 
-use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
-use pydslrep_scene::Scene;
 use pydslrep_schema::Problem;
-use pydslrep_syntax::EntityKind;
-use pydslrep_syntax::ast::Entity;
-use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
 
-use super::{Database, EntityId, FileId};
+use super::Database;
+use super::scene_run::SceneRun;
 use crate::diagnostics::PlannedRun;
-use crate::environment::{Environment, Robot};
-use crate::names::Key;
-use crate::{Fingerprint, Target, scene};
-
-/// Scenes by the names of environments.
-pub(super) type Scenes = BTreeMap<SmolStr, SceneFile>;
-
-/// The scene of an environment, and what was found out about it.
-#[derive(Debug, Clone)]
-pub(super) struct SceneFile {
-    text: Arc<str>,
-    /// The fingerprint of the environment when its files were last touched because of it.
-    touched_with: Option<Fingerprint>,
-    /// The planned run of the environment in the scene. Clones share it; its fingerprint says when it is outdated.
-    run: Arc<Mutex<Option<KnownRun>>>,
-}
-
-/// The fingerprint of an environment, and its planned run.
-type KnownRun = (Fingerprint, Option<Arc<PlannedRun>>);
+use crate::entity::{EntityId, FileId};
 
 impl Database {
     /// Sets the text of the scene file of an environment by its name, or takes it away. Kept while a file is closed, and
     /// whether or not there is such an environment.
     pub fn set_scene(&mut self, file: FileId, environment: &str, text: Option<&str>) {
-        let known = self.scenes.get(&file).and_then(|scenes| scenes.get(environment));
-        if known.map(|known| known.text.as_ref()) == text {
+        if !self.facts.set_scene(file, environment, text) {
             return;
         }
-        let scenes = self.scenes.entry(file).or_default();
+        let runs = self.runs.entry(file).or_default();
         match text {
-            Some(text) => {
-                let scene = SceneFile { text: text.into(), touched_with: None, run: Arc::default() };
-                scenes.insert(environment.into(), scene)
-            }
-            None => scenes.remove(environment),
+            Some(_) => runs.insert(environment.into(), SceneRun::default()),
+            None => runs.remove(environment),
         };
-        self.scenes.retain(|_, scenes| !scenes.is_empty());
+        self.runs.retain(|_, runs| !runs.is_empty());
         let seen = self.seen_from(file);
         self.touched.extend(seen);
-    }
-
-    /// The scenes there are: of which file, of which environment, and their texts.
-    pub fn scenes(&self) -> impl Iterator<Item = (FileId, &str, &str)> {
-        self.scenes.iter().flat_map(|(file, scenes)| {
-            scenes.iter().map(|(name, scene)| (*file, name.as_str(), scene.text.as_ref()))
-        })
-    }
-
-    /// The world that an environment drives in: what its scene file says, else an empty floor.
-    ///
-    /// # Errors
-    /// When something is wrong with the file: what it means is not known.
-    pub fn scene(&self, id: EntityId, environment: &Environment) -> Result<Scene, Vec<Problem>> {
-        let floor = scene(environment);
-        let Some(text) = self.scene_text(id) else { return Ok(floor) };
-        let (scene, problems) = pydslrep_scene::read(text, floor);
-        if problems.is_empty() { Ok(scene) } else { Err(problems) }
-    }
-
-    /// An environment with what its scene says of its robots' objects, and of their topics where scripts need them, as far as
-    /// that is right.
-    pub(crate) fn with_scene(&self, id: EntityId, environment: Environment) -> Environment {
-        let has_topics = self.file_of(id).is_some_and(|file| self.target(file) == Target::Ros2);
-        // Most files say nothing of objects and are not read.
-        let text = self.scene_text(id).filter(|text| has_topics || text.contains("object"));
-        if text.is_none() && !has_topics {
-            return environment;
-        }
-        let floor = scene(&environment);
-        let robots = match text {
-            Some(text) => pydslrep_scene::read(text, floor).0.robots,
-            None => floor.robots,
-        };
-        let placed = environment.robots.into_iter().zip(robots);
-        let placed = placed.map(|(robot, placed)| {
-            let mounts = || placed.sensors.iter().map(|sensor| sensor.mount).collect();
-            let (ros2, mounts) = if has_topics { (placed.ros2(), mounts()) } else { Default::default() };
-            Robot { ros2, mounts, objects: placed.objects, ..robot }
-        });
-        Environment { robots: placed.collect(), ..environment }
     }
 
     /// Returns the problems of a scene file, in the order of the text. Without an environment, or where a robot of it
@@ -103,48 +36,22 @@ impl Database {
         }
     }
 
-    /// The environments whose names came or went since this was last asked: each by its file and name. Also those of
-    /// files that were closed.
-    pub fn take_changed_environments(&mut self) -> Vec<(FileId, SmolStr)> {
-        let changed = std::mem::take(&mut self.changed_environments);
-        let mut changed: Vec<(FileId, SmolStr)> = changed.into_keys().collect();
-        changed.sort_unstable();
-        changed
-    }
-
-    /// The text of an environment's scene file.
-    pub(crate) fn scene_text(&self, id: EntityId) -> Option<&Arc<str>> {
-        let Entity::Environment(tree) = self.tree(id)? else { return None };
-        let name = tree.name.as_ref()?.text.as_str();
-        self.scenes.get(&self.file_of(id)?)?.get(name).map(|scene| &scene.text)
-    }
-
     /// Returns the planned runs of the environments with a scene whose actions may be in a file. A run is computed
     /// again only where the environment's fingerprint changed.
-    pub(crate) fn planned_runs(&self, file: FileId) -> Vec<Arc<PlannedRun>> {
+    pub(super) fn planned_runs(&self, file: FileId) -> Vec<Arc<PlannedRun>> {
         let mut planned_runs = Vec::new();
-        for (home, scenes) in &self.scenes {
+        for (home, runs) in &self.runs {
             if *home != file && !self.imported_files(*home).any(|imported| imported == file) {
                 continue;
             }
-            let found = scenes.iter().map(|(name, scene)| self.planned_run(*home, name, scene));
-            planned_runs.extend(found.flatten());
+            planned_runs.extend(runs.iter().filter_map(|(name, run)| self.planned_run(*home, name, run)));
         }
         planned_runs
     }
 
-    fn planned_run(&self, home: FileId, name: &SmolStr, scene: &SceneFile) -> Option<Arc<PlannedRun>> {
+    fn planned_run(&self, home: FileId, name: &SmolStr, run: &SceneRun) -> Option<Arc<PlannedRun>> {
         let id = self.environment_called(home, name)?;
-        let fingerprint = self.fingerprint(id)?;
-        let mut known = scene.run.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((of, run)) = known.as_ref()
-            && *of == fingerprint
-        {
-            return run.clone();
-        }
-        let run = PlannedRun::new(self, id).map(Arc::new);
-        *known = Some((fingerprint, run.clone()));
-        run
+        run.of(self.fingerprint(id)?, || PlannedRun::new(&self.facts, id))
     }
 
     /// Touches the files of environments that changed: the collisions on a path depend on everything the environment
@@ -152,54 +59,30 @@ impl Database {
     pub(super) fn touch_in_scenes(&mut self) {
         let mut concerned: Vec<FileId> = Vec::new();
         let mut looked_at = Vec::new();
-        for (home, scenes) in &self.scenes {
+        for (home, runs) in &self.runs {
             let seen = self.seen_from(*home);
             if !seen.iter().any(|file| self.touched.contains(file)) {
                 continue;
             }
-            for (name, scene) in scenes {
+            for (name, run) in runs {
                 let fingerprint = self.environment_called(*home, name).and_then(|id| self.fingerprint(id));
                 // Where there is something to say, other files may name a place that has moved.
-                if fingerprint != scene.touched_with || scene.has_problems() {
+                if fingerprint != run.touched_with || run.has_problems() {
                     concerned.extend(&seen);
                 }
                 looked_at.push((*home, name.clone(), fingerprint));
             }
         }
         for (home, name, fingerprint) in looked_at {
-            if let Some(scene) = self.scenes.get_mut(&home).and_then(|scenes| scenes.get_mut(&name)) {
-                scene.touched_with = fingerprint;
+            if let Some(run) = self.runs.get_mut(&home).and_then(|runs| runs.get_mut(&name)) {
+                run.touched_with = fingerprint;
             }
         }
         self.touched.extend(concerned);
     }
 
-    fn environment_called(&self, home: FileId, name: &SmolStr) -> Option<EntityId> {
-        self.definitions(home, EntityKind::Environment, name).first().copied()
-    }
-
     fn seen_from(&self, home: FileId) -> Vec<FileId> {
         std::iter::once(home).chain(self.imported_files(home)).collect()
-    }
-}
-
-impl SceneFile {
-    /// Returns whether the run is known to have problems.
-    fn has_problems(&self) -> bool {
-        let known = self.run.lock().unwrap_or_else(PoisonError::into_inner);
-        known.as_ref().and_then(|(_, run)| run.as_ref()).is_some_and(|run| run.has_problems())
-    }
-}
-
-/// Keeps account of environments that come (1) or go (-1) with a declaration of theirs.
-pub(super) fn count_environment(changed: &mut FxHashMap<(FileId, SmolStr), i32>, key: &Key, by: i32) {
-    let (file, EntityKind::Environment, name) = key else { return };
-    let entry = (*file, name.clone());
-    let more = changed.get(&entry).copied().unwrap_or(0) + by;
-    if more == 0 {
-        changed.remove(&entry);
-    } else {
-        changed.insert(entry, more);
     }
 }
 

@@ -4,9 +4,10 @@ use pydslrep_syntax::EntityKind;
 use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
 
-use super::problem::Problem;
+use super::problem::{EntityProblems, Problem};
 use super::{syntax_error, unresolved_reference, unused_declaration};
-use crate::{Database, EntityId, FileId};
+use crate::entity::FileId;
+use crate::facts::Facts;
 
 /// Decides which problems of a file only follow from others of it, which are reported.
 pub(super) struct Consequences<'a> {
@@ -21,39 +22,34 @@ pub(super) struct Consequences<'a> {
 }
 
 impl<'a> Consequences<'a> {
-    /// `with_problems` are the entities of the file that have problems.
+    /// `entities` are those of the file that have problems, which are `problems`.
     pub(super) fn new(
-        database: &Database,
+        facts: &Facts,
         file: FileId,
-        with_problems: &[EntityId],
+        entities: &[EntityProblems<'_>],
         problems: &[(u32, &'a Problem)],
     ) -> Self {
         let unresolved =
             || problems.iter().filter(|(_, problem)| problem.rule == &unresolved_reference::RULE);
         let slips = unresolved().filter_map(|(_, problem)| problem.about.as_ref());
         let mut consequences = Self {
-            hidden: has_hidden_text(database, file),
+            hidden: has_hidden_text(facts, file),
             intended: slips.collect(),
             broken: Vec::new(),
             nameless: FxHashSet::default(),
         };
         if problems.iter().any(|(_, problem)| problem.rule == &syntax_error::RULE) {
-            consequences.add_broken(database, with_problems, problems);
+            consequences.add_broken(entities, problems);
         }
         consequences
     }
 
-    fn add_broken(
-        &mut self,
-        database: &Database,
-        with_problems: &[EntityId],
-        problems: &[(u32, &'a Problem)],
-    ) {
+    fn add_broken(&mut self, entities: &[EntityProblems<'_>], problems: &[(u32, &'a Problem)]) {
         let mut nameless = Vec::new();
-        for id in with_problems {
-            let Some(parse) = database.parse(*id).filter(|parse| !parse.errors.is_empty()) else {
+        for parse in entities.iter().map(|found| found.entity.parse) {
+            if parse.errors.is_empty() {
                 continue;
-            };
+            }
             let Some((tree, kind)) = parse.entity.as_ref().and_then(|tree| Some((tree, tree.kind()?))) else {
                 continue;
             };
@@ -91,6 +87,6 @@ impl<'a> Consequences<'a> {
 }
 
 /// Returns whether declarations may be hidden in a comment that never ends.
-fn has_hidden_text(database: &Database, file: FileId) -> bool {
-    std::iter::once(file).chain(database.imported_files(file)).any(|file| database.has_open_comment(file))
+fn has_hidden_text(facts: &Facts, file: FileId) -> bool {
+    std::iter::once(file).chain(facts.imported_files(file)).any(|file| facts.has_open_comment(file))
 }

@@ -8,24 +8,24 @@ use pydslrep_syntax::{EntityKind, Span, SyntaxError, Token};
 use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
 
-use super::syntax_error::{self, Rewrite};
+use super::rewritten::Rewrite;
 use crate::defaults::drive;
 use crate::reads::Reads;
 use crate::script_name::ScriptName;
 use crate::signature::{MovementSignature, Signature};
 use crate::summary::Summary;
-use crate::{Absence, Database, Edition, EntityId, FileId, Resolution, Target};
+use crate::{Absence, Edition, EntityId, Facts, FileId, Resolution, Target};
 
 /// The entity that is checked, and all that a rule may look at beside it.
 ///
-/// An entity is checked again when something changes that its rules looked at. So rules do not see the database, which is
+/// An entity is checked again when something changes that its rules looked at. So rules do not see the facts, which are
 /// private to this file, and every accessor belongs to one of three kinds:
 ///
 /// 1. It looks at the entity alone, or at a fact of its file that invalidates the whole file when it changes.
 /// 2. It takes a name, and notes it unless the entity itself declares or uses it: those the index of names knows.
 /// 3. It takes another entity and notes it, or looks through all names of a kind and notes the kind.
 pub(super) struct Context<'a> {
-    database: &'a Database,
+    facts: &'a Facts,
     file: FileId,
     pub(super) id: EntityId,
     /// `None` for the text before the first entity.
@@ -52,11 +52,11 @@ fn all_actions(entity: &Entity) -> Vec<&Action> {
 
 // The entity itself.
 impl<'a> Context<'a> {
-    pub(super) fn new(database: &'a Database, id: EntityId) -> Option<Self> {
-        let parse = database.parse(id)?;
-        let mut context = Self {
-            database,
-            file: database.file_of(id)?,
+    pub(super) fn new(facts: &'a Facts, id: EntityId) -> Option<Self> {
+        let parse = facts.parse(id)?;
+        Some(Self {
+            facts,
+            file: facts.file_of(id)?,
             id,
             tree: parse.entity.as_ref(),
             errors: &parse.errors,
@@ -66,9 +66,7 @@ impl<'a> Context<'a> {
             references: parse.entity.as_ref().map(Entity::references).unwrap_or_default(),
             rewrites: Vec::new(),
             reads: RefCell::default(),
-        };
-        context.rewrites = syntax_error::rewrites(&context);
-        Some(context)
+        })
     }
 
     /// The actions of a movement, those in blocks too, in the order of the text; none of what is not a movement.
@@ -89,8 +87,8 @@ impl<'a> Context<'a> {
     /// The text of a range of this entity.
     pub(super) fn text(&self, span: Span) -> &str {
         let all = self.text.get_or_init(|| {
-            let entity = self.database.entity(self.id);
-            entity.map_or_else(String::new, |entity| self.database.slice(self.file, entity.span))
+            let entity = self.facts.entity(self.id);
+            entity.map_or_else(String::new, |entity| self.facts.slice(self.file, entity.span))
         });
         let end = (span.end as usize).min(all.len());
         all.get((span.start as usize).min(end)..end).unwrap_or_default()
@@ -109,7 +107,7 @@ impl<'a> Context<'a> {
 
     /// Returns the length of its text, in bytes.
     pub(super) fn len(&self) -> Option<u32> {
-        self.database.entity(self.id).map(|entity| entity.span.len())
+        self.facts.entity(self.id).map(|entity| entity.span.len())
     }
 
     /// The kind and name that it declares.
@@ -122,35 +120,35 @@ impl<'a> Context<'a> {
 impl Context<'_> {
     /// Returns the target of the file's scripts.
     pub(super) fn target(&self) -> Target {
-        self.database.target(self.file)
+        self.facts.target(self.file)
     }
 
     /// Which statements the file may have.
     pub(super) fn edition(&self) -> Edition {
-        self.database.edition(self.file)
+        self.facts.edition(self.file)
     }
 
     /// Returns whether the file has environments.
     pub(super) fn has_environments(&self) -> bool {
-        self.database.count(self.file, EntityKind::Environment) > 0
+        self.facts.count(self.file, EntityKind::Environment) > 0
     }
 
     /// Returns whether another file imports this one.
     pub(super) fn is_imported(&self) -> bool {
-        self.database.is_imported(self.file)
+        self.facts.is_imported(self.file)
     }
 
     /// Why the file that this import names is not there.
     pub(super) fn absence(&self) -> Option<&Absence> {
-        self.database.absence(self.file, &self.database.import_path(self.id)?)
+        self.facts.absence(self.file, &self.facts.import_path(self.id)?)
     }
 
     /// Where an import belongs that comes after other entities: before this one.
     pub(super) fn place_of_late_import(&self) -> Option<EntityId> {
-        if !self.database.is_late_import(self.id) {
+        if !self.facts.is_late_import(self.id) {
             return None;
         }
-        let mut entities = self.database.entities(self.file);
+        let mut entities = self.facts.entities(self.file);
         entities.find(|entity| entity.parse.entity.is_some()).map(|entity| entity.id)
     }
 }
@@ -160,20 +158,20 @@ impl<'a> Context<'a> {
     /// Resolves a name in this file.
     pub(super) fn resolve(&self, kind: EntityKind, name: &Name) -> Resolution {
         self.note_name(self.file, kind, name);
-        self.database.resolve(self.file, kind, &name.text)
+        self.facts.resolve(self.file, kind, &name.text)
     }
 
     /// Resolves a name of another entity in the file of that entity.
     fn resolve_in(&self, id: EntityId, kind: EntityKind, name: &Name) -> Option<EntityId> {
-        let file = self.database.file_of(id)?;
+        let file = self.facts.file_of(id)?;
         self.note_name(file, kind, name);
-        self.database.resolve(file, kind, &name.text).entity()
+        self.facts.resolve(file, kind, &name.text).entity()
     }
 
     /// The entities of this file that declare a name, in the order of the text.
     pub(super) fn declarations(&self, kind: EntityKind, name: &Name) -> &'a [EntityId] {
         self.note_name(self.file, kind, name);
-        self.database.definitions(self.file, kind, &name.text)
+        self.facts.definitions(self.file, kind, &name.text)
     }
 
     /// The first declaration of a name in each file that this one imports.
@@ -181,46 +179,46 @@ impl<'a> Context<'a> {
         self.note_name(self.file, kind, name);
         // A file may be imported twice.
         let mut seen = FxHashSet::default();
-        let files = self.database.imported_files(self.file).filter(|file| seen.insert(*file));
-        files.filter_map(|file| self.database.definitions(file, kind, &name.text).first().copied()).collect()
+        let files = self.facts.imported_files(self.file).filter(|file| seen.insert(*file));
+        files.filter_map(|file| self.facts.definitions(file, kind, &name.text).first().copied()).collect()
     }
 
     /// The entities of this file that use a name.
     pub(super) fn users(&self, kind: EntityKind, name: &Name) -> &'a [EntityId] {
         self.note_name(self.file, kind, name);
-        self.database.users(self.file, kind, &name.text)
+        self.facts.users(self.file, kind, &name.text)
     }
 
     /// Returns whether a name is in text of this file that had to be skipped, where it may be a use or a declaration.
     pub(super) fn is_skipped(&self, kind: EntityKind, name: &Name) -> bool {
         self.note_name(self.file, kind, name);
-        self.database.is_skipped(self.file, &name.text)
+        self.facts.is_skipped(self.file, &name.text)
     }
 
     /// Returns whether this file sees a declaration of a name, which need not be in any text.
     pub(super) fn is_declared(&self, kind: EntityKind, name: &str) -> bool {
         let name = SmolStr::new(name);
         self.reads.borrow_mut().add_name((self.file, kind, name.clone()));
-        self.database.is_in_sight(self.file, kind, &name)
+        self.facts.is_in_sight(self.file, kind, &name)
     }
 
     /// Every name of a kind that this file sees, in no order, some perhaps more than once.
     pub(super) fn names_in_sight(&self, kind: EntityKind) -> impl Iterator<Item = &'a SmolStr> {
         self.reads.borrow_mut().add_kind(kind);
-        self.database.names_in_sight(self.file, kind)
+        self.facts.names_in_sight(self.file, kind)
     }
 
     /// Returns whether another environment of the file has this one's name except for case. Environments whose names
     /// are so alike invalidate each other.
     pub(super) fn has_twin(&self, environment: &Name) -> bool {
         self.note_name(self.file, EntityKind::Environment, environment);
-        self.database.environments_but_for_case(self.file, &environment.text).len() > 1
+        self.facts.environments_but_for_case(self.file, &environment.text).len() > 1
     }
 
     /// Returns the name of an environment's script, and the other environment that is why.
     pub(super) fn script_name(&self, environment: &Name) -> Option<(ScriptName, Option<EntityId>)> {
         self.reads.borrow_mut().add_kind(EntityKind::Environment);
-        self.database.script_name(self.file, &environment.text)
+        self.facts.script_name(self.file, &environment.text)
     }
 
     fn note_name(&self, file: FileId, kind: EntityKind, name: &Name) {
@@ -244,7 +242,7 @@ impl<'a> Context<'a> {
         if id != self.id {
             self.reads.borrow_mut().add_entity(id);
         }
-        self.database.parse(id).map(Signature::of)
+        self.facts.parse(id).map(Signature::of)
     }
 
     /// Returns the summary of a movement.
@@ -252,14 +250,14 @@ impl<'a> Context<'a> {
         if id != self.id {
             self.reads.borrow_mut().add_summary(id);
         }
-        Summary::of(self.database.parse(id)?.entity.as_ref()?)
+        Summary::of(self.facts.parse(id)?.entity.as_ref()?)
     }
 
     /// The movement that another one calls by a name.
     pub(super) fn movement_of(&self, id: EntityId, name: &SmolStr) -> Option<EntityId> {
-        let file = self.database.file_of(id)?;
+        let file = self.facts.file_of(id)?;
         self.reads.borrow_mut().add_name((file, EntityKind::Movement, name.clone()));
-        self.database.resolve(file, EntityKind::Movement, name).entity()
+        self.facts.resolve(file, EntityKind::Movement, name).entity()
     }
 
     /// The name that an entity declares.
@@ -277,7 +275,7 @@ impl<'a> Context<'a> {
     pub(super) fn is_before(&self, one: EntityId, other: EntityId) -> bool {
         let place = |id: EntityId| {
             self.reads.borrow_mut().add_entity(id);
-            (self.database.file_of(id).map(|file| self.database.path(file)), self.database.order(id))
+            (self.facts.file_of(id).map(|file| self.facts.path(file)), self.facts.order(id))
         };
         place(one) < place(other)
     }

@@ -5,7 +5,7 @@ use pydslrep_syntax::{Span, Token, TokenKind, escape};
 
 use super::context::Context;
 use super::problem::{ProblemFix, Renaming};
-use crate::{Database, Edit, EntityId, FileId, FileSpan, Fix};
+use crate::{Edit, EntityId, Facts, FileId, FileSpan, Fix};
 
 /// A replacement of text in one entity.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -165,65 +165,65 @@ pub(super) fn append(entity: EntityId, list: &References, name: &str, separator:
 }
 
 /// A fix with its edits where their entities are now.
-pub(super) fn located(database: &Database, fix: &ProblemFix) -> Option<Fix> {
+pub(super) fn located(facts: &Facts, fix: &ProblemFix) -> Option<Fix> {
     let edits = fix.edits.iter().map(|edit| {
-        let entity = if edit.declares { declared_before(database, edit.entity)? } else { edit.entity };
-        let (file, span) = absolute(database, entity, edit.span)?;
-        let span = if edit.text.is_empty() { tidy_removal(database, file, span) } else { span };
-        let text = if edit.joins { edit.text.clone() } else { kept_apart(database, file, span, &edit.text) };
-        Some(Edit { file, span, text: text.replace('\n', database.line_ending(file)) })
+        let entity = if edit.declares { declared_before(facts, edit.entity)? } else { edit.entity };
+        let (file, span) = absolute(facts, entity, edit.span)?;
+        let span = if edit.text.is_empty() { tidy_removal(facts, file, span) } else { span };
+        let text = if edit.joins { edit.text.clone() } else { kept_apart(facts, file, span, &edit.text) };
+        Some(Edit { file, span, text: text.replace('\n', facts.line_ending(file)) })
     });
     let mut edits = edits.collect::<Option<Vec<Edit>>>()?;
-    edits.extend(fix.renames.iter().flat_map(|renaming| renamed(database, renaming)));
+    edits.extend(fix.renames.iter().flat_map(|renaming| renamed(facts, renaming)));
     Some(Fix { title: fix.title.clone(), safe: fix.safe, edits })
 }
 
 /// The edits that give a declaration and all references to it another text.
-fn renamed(database: &Database, Renaming { declared, kind, name, text }: &Renaming) -> Vec<Edit> {
-    let Some(home) = database.file_of(*declared) else { return Vec::new() };
-    let declarations = database.declarations(home, *kind, name).into_iter();
+fn renamed(facts: &Facts, Renaming { declared, kind, name, text }: &Renaming) -> Vec<Edit> {
+    let Some(home) = facts.file_of(*declared) else { return Vec::new() };
+    let declarations = facts.declarations(home, *kind, name).into_iter();
     let declarations = declarations.map(|span| FileSpan { file: home, span });
-    let mut places: Vec<FileSpan> = declarations.chain(database.references(home, *kind, name)).collect();
+    let mut places: Vec<FileSpan> = declarations.chain(facts.references(home, *kind, name)).collect();
     places.sort_unstable();
-    let edit = |FileSpan { file, span }| Edit { file, span, text: kept_apart(database, file, span, text) };
+    let edit = |FileSpan { file, span }| Edit { file, span, text: kept_apart(facts, file, span, text) };
     places.into_iter().map(edit).collect()
 }
 
 /// The entity, it or one before it, that a declaration can precede without cutting another one in two: what comes
 /// before it is complete, and ends on a line before.
-fn declared_before(database: &Database, id: EntityId) -> Option<EntityId> {
+fn declared_before(facts: &Facts, id: EntityId) -> Option<EntityId> {
     /// How far before the entity to look: longer invalid text is no place for a declaration.
     const MAX_SLOTS_BEFORE: usize = 64;
-    let entity = database.entity(id)?;
-    let (index, _) = database.slot_at(entity.file, entity.span.start);
-    let slots = database.slots(entity.file).get(..=index)?;
+    let entity = facts.entity(id)?;
+    let (index, _) = facts.slot_at(entity.file, entity.span.start);
+    let slots = facts.slots(entity.file).get(..=index)?;
     let is_free =
-        |at: &usize| *at == 0 || slots.get(at - 1).is_some_and(|before| is_over(database, before.entity));
+        |at: &usize| *at == 0 || slots.get(at - 1).is_some_and(|before| is_over(facts, before.entity));
     let at = (index.saturating_sub(MAX_SLOTS_BEFORE)..=index).rev().find(is_free)?;
     slots.get(at).map(|slot| slot.entity)
 }
 
 /// Returns whether an entity is complete, and the next one starts on another line.
-fn is_over(database: &Database, id: EntityId) -> bool {
-    let Some(entity) = database.entity(id) else { return false };
+fn is_over(facts: &Facts, id: EntityId) -> bool {
+    let Some(entity) = facts.entity(id) else { return false };
     let last = entity.parse.tokens.iter().rev().find(|(token, _)| !token.is_comment());
     let Some((_, last)) = last else { return true };
-    let rest = database.slice(entity.file, Span::new(entity.span.start + last.end, entity.span.end));
+    let rest = facts.slice(entity.file, Span::new(entity.span.start + last.end, entity.span.end));
     let is_import = matches!(entity.parse.entity, Some(Entity::Import(_)));
     (is_import || entity.parse.errors.is_empty()) && rest.contains(['\n', '\r'])
 }
 
 /// Returns the span to remove so that the lines around it stay as they are: where something else is before it on its
 /// line, the end of that line is not part of it, but the space between the two is.
-fn tidy_removal(database: &Database, file: FileId, span: Span) -> Span {
+fn tidy_removal(facts: &Facts, file: FileId, span: Span) -> Span {
     /// Longer white space between two things of one line may stay.
     const FAR: u32 = 256;
-    let removed = database.slice(file, span);
+    let removed = facts.slice(file, span);
     if !removed.ends_with(['\n', '\r']) || span.start == 0 {
         return span;
     }
     let before = (1..=FAR.min(span.start))
-        .map(|back| (back, database.slice(file, Span::new(span.start - back, span.start - back + 1))));
+        .map(|back| (back, facts.slice(file, Span::new(span.start - back, span.start - back + 1))));
     let Some((back, text)) = before.into_iter().find(|(_, text)| text != " " && text != "\t") else {
         return span;
     };
@@ -236,17 +236,17 @@ fn tidy_removal(database: &Database, file: FileId, span: Span) -> Span {
 
 /// The text of an edit, with a space where a word in it, or beside a gap it leaves, would run into another one: before
 /// `^` or a sign, a number or a name needs none.
-fn kept_apart(database: &Database, file: FileId, span: Span, text: &str) -> String {
+fn kept_apart(facts: &Facts, file: FileId, span: Span, text: &str) -> String {
     let is_word = |c: char| c.is_alphanumeric() || c == '_';
     let first = |text: &str| text.chars().next().is_some_and(is_word);
     let last = |text: &str| text.chars().next_back().is_some_and(is_word);
     // Texts are cut between characters, and no character is longer than this.
-    let beside = |start: u32, end: u32| database.slice(file, Span::new(start, end));
+    let beside = |start: u32, end: u32| facts.slice(file, Span::new(start, end));
     let before = (1..=4_u32.min(span.start)).map(|back| beside(span.start - back, span.start));
     let runs_in = before.into_iter().find(|text| !text.is_empty()).is_some_and(|text| last(&text));
     let following = (1..=4).map(|ahead| beside(span.end, span.end + ahead)).find(|text| !text.is_empty());
     let runs_on = following.is_some_and(|text| first(&text));
-    let replaced = database.slice(file, span);
+    let replaced = facts.slice(file, span);
     if text.is_empty() {
         return if runs_in && runs_on { " ".to_owned() } else { String::new() };
     }
@@ -256,7 +256,7 @@ fn kept_apart(database: &Database, file: FileId, span: Span, text: &str) -> Stri
 }
 
 /// Where a part of an entity is.
-pub(super) fn absolute(database: &Database, id: EntityId, span: Span) -> Option<(FileId, Span)> {
-    let entity = database.entity(id)?;
+pub(super) fn absolute(facts: &Facts, id: EntityId, span: Span) -> Option<(FileId, Span)> {
+    let entity = facts.entity(id)?;
     Some((entity.file, span.shifted(entity.span.start)))
 }

@@ -12,7 +12,7 @@ use super::planned_run::{OutOfRange, PlannedRun};
 use super::problem::Problem;
 use super::rule::{Applicability, Checks, Page, Rule};
 use crate::signature::Signature;
-use crate::{Database, Diagnostic, FileId, Severity};
+use crate::{Diagnostic, Facts, FileId, Severity};
 
 pub(super) static RULE: Rule = Rule {
     code: "invalid-within",
@@ -77,10 +77,10 @@ fn problem(context: &Context<'_>, condition: &Condition, within: &Within) -> Opt
 }
 
 /// The problems of the conditions of a file in the runs of its environments; each once.
-fn in_runs(database: &Database, file: FileId, runs: &[Arc<PlannedRun>]) -> Vec<Diagnostic> {
+fn in_runs(facts: &Facts, file: FileId, runs: &[Arc<PlannedRun>]) -> Vec<Diagnostic> {
     let mut diagnostics: Vec<Diagnostic> = Vec::new();
     for run in runs {
-        let found = run.out_of_range.iter().filter_map(|found| located(database, run, found));
+        let found = run.out_of_range.iter().filter_map(|found| located(facts, run, found));
         for diagnostic in found.filter(|diagnostic| diagnostic.file == file) {
             if diagnostics.iter().all(|other| other.span != diagnostic.span) {
                 diagnostics.push(diagnostic);
@@ -90,8 +90,8 @@ fn in_runs(database: &Database, file: FileId, runs: &[Arc<PlannedRun>]) -> Vec<D
     diagnostics
 }
 
-fn located(database: &Database, run: &PlannedRun, found: &OutOfRange) -> Option<Diagnostic> {
-    let entity = database.entity(found.movement)?;
+fn located(facts: &Facts, run: &PlannedRun, found: &OutOfRange) -> Option<Diagnostic> {
+    let entity = facts.entity(found.movement)?;
     let environment = run.environment();
     let sensors = if found.count == 1 { "this sensor sees nothing" } else { "these sensors see nothing" };
     Some(Diagnostic {

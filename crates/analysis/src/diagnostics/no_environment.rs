@@ -3,7 +3,7 @@
 use pydslrep_syntax::{EntityKind, Span, escape};
 
 use super::rule::{Applicability, Checks, Page, Rule};
-use crate::{Database, Diagnostic, Edit, EntityRef, FileId, Fix, Severity};
+use crate::{Diagnostic, Edit, EntityRef, Facts, FileId, Fix, Severity};
 
 pub(super) static RULE: Rule = Rule {
     code: "no-environment",
@@ -37,18 +37,18 @@ environment yard has { rover } robots with { trip } moves",
 };
 
 /// The problem, if the file has it, at its last entity.
-fn in_file(database: &Database, file: FileId) -> Option<Diagnostic> {
-    let has = |kind| database.count(file, kind) > 0;
+fn in_file(facts: &Facts, file: FileId) -> Option<Diagnostic> {
+    let has = |kind| facts.count(file, kind) > 0;
     let wanted = has(EntityKind::Robot)
         && has(EntityKind::Movement)
         && !has(EntityKind::Environment)
-        && !database.is_imported(file)
-        && !database.has_open_comment(file)
-        && !database.has_skipped_names(file);
+        && !facts.is_imported(file)
+        && !facts.has_open_comment(file)
+        && !facts.has_skipped_names(file);
     if !wanted {
         return None;
     }
-    let last = database.entities(file).filter(|entity| entity.parse.entity.is_some()).last()?;
+    let last = facts.entities(file).filter(|entity| entity.parse.entity.is_some()).last()?;
     let name = last.parse.entity.as_ref()?.name();
     let span = name.map_or(last.parse.tokens.first()?.1, |name| name.span).shifted(last.span.start);
     Some(Diagnostic {
@@ -60,14 +60,14 @@ fn in_file(database: &Database, file: FileId) -> Option<Diagnostic> {
         help: Some(format!("add one: `{}`", EntityKind::Environment.shape())),
         note: None,
         related: Vec::new(),
-        fixes: vec![with_all(database, &last)],
+        fixes: vec![with_all(facts, &last)],
     })
 }
 
 /// An environment with every robot and every movement of the file, after its last entity.
-fn with_all(database: &Database, last: &EntityRef<'_>) -> Fix {
+fn with_all(facts: &Facts, last: &EntityRef<'_>) -> Fix {
     let names = |wanted: EntityKind| {
-        let named = database.entities(last.file).filter_map(|entity| {
+        let named = facts.entities(last.file).filter_map(|entity| {
             let tree = entity.parse.entity.as_ref().filter(|tree| tree.kind() == Some(wanted))?;
             tree.name().map(|name| escape(&name.text))
         });
@@ -75,7 +75,7 @@ fn with_all(database: &Database, last: &EntityRef<'_>) -> Fix {
         names.dedup();
         names.join(" ")
     };
-    let ending = database.line_ending(last.file);
+    let ending = facts.line_ending(last.file);
     let tokens = last.parse.tokens.iter().rev();
     let end = tokens.map(|(_, span)| span.end).next().unwrap_or(last.span.len()) + last.span.start;
     let (robots, movements) = (names(EntityKind::Robot), names(EntityKind::Movement));

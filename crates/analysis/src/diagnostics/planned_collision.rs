@@ -8,7 +8,7 @@ use pydslrep_syntax::ast::Entity;
 
 use super::planned_run::PlannedRun;
 use super::rule::{Applicability, Checks, Page, Rule};
-use crate::{Database, Diagnostic, FileId, Related, Severity};
+use crate::{Diagnostic, Facts, FileId, Related, Severity};
 
 pub(super) static RULE: Rule = Rule {
     code: "planned-collision",
@@ -56,9 +56,9 @@ environment yard has { rover } robots with { trip } moves",
 };
 
 /// The problems of the actions of a file in the runs of its environments.
-fn in_runs(database: &Database, file: FileId, runs: &[Arc<PlannedRun>]) -> Vec<Diagnostic> {
+fn in_runs(facts: &Facts, file: FileId, runs: &[Arc<PlannedRun>]) -> Vec<Diagnostic> {
     let problems = runs.iter().flat_map(|run| {
-        let located = Located { database, run };
+        let located = Located { facts, run };
         run.collisions.iter().filter_map(move |collision| located.problem(collision))
     });
     problems.filter(|problem| problem.file == file).collect()
@@ -67,7 +67,7 @@ fn in_runs(database: &Database, file: FileId, runs: &[Arc<PlannedRun>]) -> Vec<D
 /// The same with the places as they are now.
 #[derive(Clone, Copy)]
 struct Located<'a> {
-    database: &'a Database,
+    facts: &'a Facts,
     run: &'a PlannedRun,
 }
 
@@ -104,7 +104,7 @@ impl Located<'_> {
     fn place(&self, index: ActionIndex, place: &Place, message: String) -> Option<Related> {
         let listed = *self.run.environment.schedule.get(index.group)?.get(index.run)?;
         let movement = place.calls().last().map_or(listed, |call| call.movement);
-        let entity = self.database.entity(*self.run.movements.get(movement)?)?;
+        let entity = self.facts.entity(*self.run.movements.get(movement)?)?;
         let Some(Entity::Movement(tree)) = &entity.parse.entity else { return None };
         let span = tree.statements().get(index.action)?.shifted(entity.span.start);
         Some(Related { file: entity.file, span, message })

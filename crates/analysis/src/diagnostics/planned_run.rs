@@ -5,7 +5,7 @@ use pydslrep_syntax::Span;
 use pydslrep_syntax::ast::{Action, Condition, Entity, Name};
 
 use crate::environment::Environment;
-use crate::{Database, EntityId, plan};
+use crate::{EntityId, Facts, plan};
 
 /// The planned run of an environment in its scene; it names no places, so that it holds as long as the environment
 /// does.
@@ -20,13 +20,14 @@ pub(crate) struct PlannedRun {
 }
 
 impl PlannedRun {
-    /// `None` where the environment or the scene has errors: those come first.
-    pub(crate) fn new(database: &Database, id: EntityId) -> Option<Self> {
-        let (environment, movements) = database.resolved(id)?;
-        let scene = database.scene(id, &environment).ok()?;
+    /// The run of an environment without errors; `None` where the scene has some: those come first.
+    pub(crate) fn new(facts: &Facts, id: EntityId) -> Option<Self> {
+        let environment = facts.resolved_environment(id)?;
+        let movements = facts.movements_of(id)?;
+        let scene = facts.scene(id, &environment).ok()?;
         let plan = plan(&environment, &scene).ok()?;
         let collisions = collisions(&scene, &plan);
-        let out_of_range = out_of_range(database, &environment, &scene, &movements);
+        let out_of_range = out_of_range(facts, &environment, &scene, &movements);
         Some(Self { environment, scene, movements, collisions, out_of_range })
     }
 
@@ -65,7 +66,7 @@ pub(super) struct OutOfRange {
 
 /// The distances that are out of range in the movements of an environment, which has them in the same order.
 fn out_of_range(
-    database: &Database,
+    facts: &Facts,
     environment: &Environment,
     scene: &Scene,
     movements: &[EntityId],
@@ -73,7 +74,7 @@ fn out_of_range(
     let mut found = Vec::new();
     for (&movement, resolved) in movements.iter().zip(&environment.movements) {
         let (Some(Entity::Movement(tree)), Some(robot)) =
-            (database.tree(movement), scene.robots.get(resolved.robot))
+            (facts.tree(movement), scene.robots.get(resolved.robot))
         else {
             continue;
         };

@@ -5,7 +5,7 @@ use smol_str::SmolStr;
 
 use super::edits::ProblemEdit;
 use super::rule::Rule;
-use crate::{EntityId, Severity};
+use crate::{EntityId, EntityRef, Severity};
 
 /// A problem whose places count from the start of the entities they are in, so that it stays true wherever those
 /// move.
@@ -27,6 +27,12 @@ pub(crate) struct Problem {
     /// The brace it is about, where another entity may have the other half.
     pub(crate) brace: Option<Brace>,
     pub(crate) fixes: Vec<ProblemFix>,
+}
+
+/// An entity with its problems.
+pub(crate) struct EntityProblems<'a> {
+    pub(crate) entity: EntityRef<'a>,
+    pub(crate) problems: &'a [Problem],
 }
 
 /// One half of a pair of braces.

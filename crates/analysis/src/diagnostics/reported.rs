@@ -1,19 +1,25 @@
 //! What is reported: the problems of entities without those that only follow from others, with absolute places.
 
+use std::sync::Arc;
+
 use super::catalogue::CATALOGUE;
 use super::consequences::Consequences;
 use super::context::Context;
 use super::edits::{self, absolute};
-use super::problem::{Brace, Problem};
+use super::planned_run::PlannedRun;
+use super::problem::{Brace, EntityProblems, Problem};
 use super::rule::Rule;
 use super::syntax_error;
+use crate::entity::{EntityId, FileId};
+use crate::facts::Facts;
 use crate::reads::Reads;
-use crate::{Database, Diagnostic, EntityId, FileId, Related, Severity};
+use crate::{Diagnostic, Related, Severity};
 
 /// The problems of one entity, in the order of the text, and what was looked at to find them.
-pub(crate) fn in_entity(database: &Database, id: EntityId) -> (Vec<Problem>, Reads) {
+pub(crate) fn in_entity(facts: &Facts, id: EntityId) -> (Vec<Problem>, Reads) {
     let mut problems = Vec::new();
-    let Some(context) = Context::new(database, id) else { return (problems, Reads::default()) };
+    let Some(mut context) = Context::new(facts, id) else { return (problems, Reads::default()) };
+    context.rewrites = syntax_error::rewrites(&context);
     for check in CATALOGUE.iter().filter_map(|rule| rule.checks.entity) {
         check(&context, &mut problems);
     }
@@ -30,31 +36,37 @@ struct Reported<'a> {
     is_nested: bool,
 }
 
-/// The problems of a file with absolute places.
-pub(crate) fn in_file(database: &Database, file: FileId) -> Vec<Diagnostic> {
-    let located = reported(database, file).into_iter().map(|Reported { start, problem, is_nested }| {
-        let mut diagnostic = located(database, file, start, problem);
-        if is_nested {
-            syntax_error::nested(&mut diagnostic);
-        }
-        diagnostic
-    });
+/// The problems of a file with absolute places: of its entities, in the order of the text, and of the planned runs that it is
+/// part of.
+pub(crate) fn in_file(
+    facts: &Facts,
+    file: FileId,
+    entities: &[EntityProblems<'_>],
+    runs: &[Arc<PlannedRun>],
+) -> Vec<Diagnostic> {
+    let located =
+        reported(facts, file, entities).into_iter().map(|Reported { start, problem, is_nested }| {
+            let mut diagnostic = located(facts, file, start, problem);
+            if is_nested {
+                syntax_error::nested(&mut diagnostic);
+            }
+            diagnostic
+        });
     let mut diagnostics: Vec<Diagnostic> = located.collect();
-    diagnostics.extend(beyond_entities(database, file));
+    diagnostics.extend(beyond_entities(facts, file, runs));
     diagnostics.sort_by_key(|diagnostic| diagnostic.span.start);
     diagnostics
 }
 
 /// The problems of a file that no entity has alone: its own, and those of its actions in environments with scenes.
-fn beyond_entities(database: &Database, file: FileId) -> Vec<Diagnostic> {
-    let runs = database.planned_runs(file);
-    let in_file = |check: fn(&Database, FileId) -> Option<Diagnostic>| check(database, file);
+fn beyond_entities(facts: &Facts, file: FileId, runs: &[Arc<PlannedRun>]) -> Vec<Diagnostic> {
+    let in_file = |check: fn(&Facts, FileId) -> Option<Diagnostic>| check(facts, file);
     let mut diagnostics: Vec<Diagnostic> =
         CATALOGUE.iter().filter_map(|rule| rule.checks.file.and_then(in_file)).collect();
     // Without scenes there are no runs.
     if !runs.is_empty() {
         let in_runs = CATALOGUE.iter().filter_map(|rule| rule.checks.runs);
-        diagnostics.extend(in_runs.flat_map(|check| check(database, file, &runs)));
+        diagnostics.extend(in_runs.flat_map(|check| check(facts, file, runs)));
     }
     diagnostics
 }
@@ -62,29 +74,28 @@ fn beyond_entities(database: &Database, file: FileId) -> Vec<Diagnostic> {
 /// Calls `visit` with the rule, the severity and the start of all that [`in_file`] returns, in no order; their places and
 /// fixes, which take much longer, are not looked for.
 pub(crate) fn visit_in_file(
-    database: &Database,
+    facts: &Facts,
     file: FileId,
+    entities: &[EntityProblems<'_>],
+    runs: &[Arc<PlannedRun>],
     mut visit: impl FnMut(&'static Rule, Severity, u32),
 ) {
-    for Reported { start, problem, .. } in reported(database, file) {
+    for Reported { start, problem, .. } in reported(facts, file, entities) {
         visit(problem.rule, problem.severity, problem.span.shifted(start).start);
     }
-    for diagnostic in beyond_entities(database, file) {
+    for diagnostic in beyond_entities(facts, file, runs) {
         visit(diagnostic.rule, diagnostic.severity, diagnostic.span.start);
     }
 }
 
 /// The problems of a file's entities without those that only follow from others, in the order of the text.
-fn reported(database: &Database, file: FileId) -> Vec<Reported<'_>> {
-    let entities = database.entities_with_problems(file);
-    let ids: Vec<EntityId> = entities.iter().map(|entity| entity.id).collect();
-    let problems: Vec<(u32, &Problem)> = entities
-        .into_iter()
-        .flat_map(|entity| {
-            database.problems(entity.id).iter().map(move |problem| (entity.span.start, problem))
-        })
-        .collect();
-    let consequences = Consequences::new(database, file, &ids, &problems);
+fn reported<'a>(facts: &Facts, file: FileId, entities: &[EntityProblems<'a>]) -> Vec<Reported<'a>> {
+    let with_start = |found: &EntityProblems<'a>| {
+        let start = found.entity.span.start;
+        found.problems.iter().map(move |problem| (start, problem))
+    };
+    let problems: Vec<(u32, &Problem)> = entities.iter().flat_map(with_start).collect();
+    let consequences = Consequences::new(facts, file, entities, &problems);
     let mut reported: Vec<Reported<'_>> = Vec::with_capacity(problems.len());
     let mut open = None;
     for (start, problem) in problems.into_iter().filter(|(_, problem)| !consequences.include(problem)) {
@@ -103,19 +114,17 @@ fn reported(database: &Database, file: FileId) -> Vec<Reported<'_>> {
 }
 
 /// The problems of some entities, wherever they are, with absolute places.
-pub(crate) fn of_entities(database: &Database, ids: &[EntityId]) -> Vec<Diagnostic> {
-    let mut diagnostics = Vec::new();
-    for entity in ids.iter().filter_map(|id| database.entity(*id)) {
-        for problem in database.problems(entity.id) {
-            diagnostics.push(located(database, entity.file, entity.span.start, problem));
-        }
-    }
-    diagnostics
+pub(crate) fn of_entities(facts: &Facts, entities: &[EntityProblems<'_>]) -> Vec<Diagnostic> {
+    let located = |EntityProblems { entity, problems }: &EntityProblems<'_>| {
+        let (file, start) = (entity.file, entity.span.start);
+        problems.iter().map(move |problem| located(facts, file, start, problem)).collect::<Vec<_>>()
+    };
+    entities.iter().flat_map(located).collect()
 }
 
-fn located(database: &Database, file: FileId, start: u32, problem: &Problem) -> Diagnostic {
+fn located(facts: &Facts, file: FileId, start: u32, problem: &Problem) -> Diagnostic {
     let related = problem.related.iter().filter_map(|related| {
-        let (file, span) = absolute(database, related.entity, related.span)?;
+        let (file, span) = absolute(facts, related.entity, related.span)?;
         Some(Related { file, span, message: related.message.clone() })
     });
     Diagnostic {
@@ -127,6 +136,6 @@ fn located(database: &Database, file: FileId, start: u32, problem: &Problem) -> 
         help: problem.help.clone(),
         note: problem.note.clone(),
         related: related.collect(),
-        fixes: problem.fixes.iter().filter_map(|fix| edits::located(database, fix)).collect(),
+        fixes: problem.fixes.iter().filter_map(|fix| edits::located(facts, fix)).collect(),
     }
 }

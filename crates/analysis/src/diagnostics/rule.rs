@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::context::Context;
 use super::planned_run::PlannedRun;
 use super::problem::Problem;
-use crate::{Database, Diagnostic, FileId, Severity};
+use crate::{Diagnostic, Facts, FileId, Severity};
 
 /// A row of the catalogue.
 #[derive(Debug)]
@@ -37,19 +37,19 @@ pub(super) struct Checks {
     /// Finds the problems of an entity.
     pub(super) entity: Option<fn(&Context<'_>, &mut Vec<Problem>)>,
     /// Finds the problem of a whole file.
-    pub(super) file: Option<fn(&Database, FileId) -> Option<Diagnostic>>,
+    pub(super) file: Option<fn(&Facts, FileId) -> Option<Diagnostic>>,
     /// Finds the problems that the actions of a file have in the planned runs of its environments.
     pub(super) runs: Option<CheckRuns>,
 }
 
-type CheckRuns = fn(&Database, FileId, &[Arc<PlannedRun>]) -> Vec<Diagnostic>;
+type CheckRuns = fn(&Facts, FileId, &[Arc<PlannedRun>]) -> Vec<Diagnostic>;
 
 impl Checks {
     pub(super) const fn of_entity(check: fn(&Context<'_>, &mut Vec<Problem>)) -> Self {
         Self { entity: Some(check), file: None, runs: None }
     }
 
-    pub(super) const fn of_file(check: fn(&Database, FileId) -> Option<Diagnostic>) -> Self {
+    pub(super) const fn of_file(check: fn(&Facts, FileId) -> Option<Diagnostic>) -> Self {
         Self { entity: None, file: Some(check), runs: None }
     }
 

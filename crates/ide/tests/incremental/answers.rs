@@ -7,7 +7,7 @@
 use std::collections::BTreeSet;
 use std::fmt::Debug;
 
-use pydslrep_analysis::{Database, Diagnostic, EntityId, EntityRef, FileId, Snapshot, plan_movement};
+use pydslrep_analysis::{Database, Diagnostic, EntityId, EntityRef, Facts, FileId, Snapshot, plan_movement};
 use pydslrep_ide::{self as ide, FilePosition};
 use pydslrep_syntax::{EntityKind, Span};
 use smol_str::SmolStr;
@@ -107,7 +107,7 @@ fn text(pair: &Pair<'_>) -> Result<(), String> {
     pair.same("places of entities", |database| {
         database.entities(file).map(|entity| entity.span).collect::<Vec<_>>()
     })?;
-    let parses = |database| Database::entities(database, file).map(|entity| entity.parse);
+    let parses = |facts| Facts::entities(facts, file).map(|entity| entity.parse);
     if parses(pair.edited).eq(parses(pair.fresh)) {
         return Ok(());
     }

@@ -13,7 +13,7 @@ mod words;
 use pydslrep_syntax::ast::{Entity, Name};
 use pydslrep_syntax::{EntityKind, Expected, Found, Span, SyntaxError, SyntaxErrorKind, TokenKind};
 
-pub(super) use self::rewrite::{Rewrite, find as rewrites};
+pub(super) use self::rewrite::find as rewrites;
 use self::words::{listed, shape, worth_listing};
 use super::context::Context;
 use super::problem::{Brace, Problem, Renaming};
@@ -49,7 +49,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let others = errors.filter_map(|error| problem(context, error));
     problems.extend(others.map(|problem| rewrite::with_fallback(context, problem)));
     problems.extend(glued.iter().map(|glued| glued.problem(context)));
-    problems.extend(context.rewrites.iter().filter_map(|rewrite| rewrite.problem(context)));
+    problems.extend(context.rewrites.iter().filter_map(|statement| rewrite::problem(statement, context)));
     problems.extend(late_import(context));
 }
 

@@ -3,8 +3,10 @@
 use pydslrep_syntax::{EntityKind, Span, Token, TokenKind};
 use pydslrep_text::is_similar;
 
-use super::{Rewrite, Word, are_sound, rewrite, shape, words, words_of};
+use super::statement::{Word, are_sound, rewrite, shape, words_of};
 use crate::diagnostics::context::Context;
+use crate::diagnostics::rewritten::Rewrite;
+use crate::diagnostics::syntax_error::words;
 
 /// Statements of a block after these are not rewritten.
 const MAX_STATEMENTS: usize = 64;

@@ -3,8 +3,9 @@
 use pydslrep_syntax::{EntityKind, SyntaxErrorKind, TokenKind};
 use pydslrep_text::is_similar;
 
-use super::{Difference, Rewrite, Word, are_sound, rewrite, shape, words_of};
+use super::statement::{Difference, Word, are_sound, rewrite, shape, words_of};
 use crate::diagnostics::context::Context;
+use crate::diagnostics::rewritten::Rewrite;
 
 /// The entity as it is written, where its mistakes are one.
 pub(super) fn find(context: &Context<'_>, kind: EntityKind) -> Option<Rewrite> {

@@ -2,7 +2,7 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::FileId;
+use crate::entity::FileId;
 
 /// Why a file that is imported cannot be used. The database sees no disk: the caller that reads files for it says so.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -1,42 +1,21 @@
-//! The names of environments' scripts, kept until an environment of the file comes, goes or is renamed.
+//! The names of environments' scripts.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
-use pydslrep_syntax::EntityKind;
-use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
 
-use super::{Database, EntityId, FileId};
-use crate::names::Key;
-use crate::script_name::{Obstacle, ScriptName, obstacle, script_names};
+use super::Facts;
+use crate::entity::{EntityId, FileId};
+use crate::script_name::{NamesOfFile, Obstacle, ScriptName, obstacle, script_names};
 
-/// By files; of one that has environments there is an entry, filled once it is needed.
-#[derive(Debug, Clone, Default)]
-pub(super) struct ScriptNames(FxHashMap<FileId, OnceLock<Arc<NamesOfFile>>>);
-
-#[derive(Debug)]
-struct NamesOfFile {
-    environments: Vec<EntityId>,
-    by_name: FxHashMap<SmolStr, ScriptName>,
-}
-
-impl ScriptNames {
-    /// A declaration comes or goes.
-    pub(super) fn forget(&mut self, key: &Key) {
-        if key.1 == EntityKind::Environment {
-            self.0.insert(key.0, OnceLock::new());
-        }
-    }
-}
-
-impl Database {
+impl Facts {
     /// Returns the name of an environment's script, and the environment that already has the usual one, if any. Most
     /// names are free, which is known without looking at the others.
     pub(crate) fn script_name(&self, file: FileId, name: &SmolStr) -> Option<(ScriptName, Option<EntityId>)> {
         if obstacle(name).is_none() && self.environments_but_for_case(file, name).len() < 2 {
             return Some((ScriptName { stem: name.to_string(), obstacle: None }, None));
         }
-        let of_file = self.script_names.0.get(&file)?.get_or_init(|| Arc::new(self.names_of_file(file)));
+        let of_file = self.script_names.of(file)?.get_or_init(|| Arc::new(self.names_of_file(file)));
         let found = of_file.by_name.get(name)?.clone();
         let other = match found.obstacle {
             Some(Obstacle::SameButForCase(other)) => of_file.environments.get(other).copied(),
@@ -56,8 +35,9 @@ impl Database {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use pydslrep_syntax::Span;
+
+    use crate::Database;
 
     #[test]
     fn names_follow_the_environments() {

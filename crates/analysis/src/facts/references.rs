@@ -3,18 +3,10 @@
 use pydslrep_syntax::{EntityKind, Span, TokenKind};
 use smol_str::SmolStr;
 
-use super::{Database, EntityId, EntityRef, FileId};
+use super::Facts;
+use crate::entity::{EntityId, EntityRef, FileId, FileSpan};
 
-/// A range of text in a file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct FileSpan {
-    /// Which file.
-    pub file: FileId,
-    /// From the start of the file.
-    pub span: Span,
-}
-
-impl Database {
+impl Facts {
     /// Everything that a name could mean in a file: its own declarations, else those of every file that it imports, in
     /// the order of the imports. [`Self::resolve`] leads to the first.
     pub fn candidates(&self, file: FileId, kind: EntityKind, name: &SmolStr) -> Vec<EntityId> {
@@ -97,7 +89,7 @@ impl Database {
 
     /// The import statements of a file with the paths that they lead to, in the order of the text.
     pub fn import_statements(&self, file: FileId) -> Vec<(EntityRef<'_>, String)> {
-        let statements = self.imports.get(&file).map_or(&[][..], |imports| &imports.entities);
+        let statements = self.imports.entities(file);
         let located = self.located(statements).into_iter();
         located.filter_map(|entity| Some((entity, self.import_path(entity.id)?))).collect()
     }
@@ -114,6 +106,7 @@ impl Database {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Database;
 
     /// Three files: `a` and `b` both declare `w`, `main` imports both.
     fn three() -> (Database, [FileId; 3]) {
