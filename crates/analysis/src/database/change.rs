@@ -204,10 +204,25 @@ impl Database {
             entities.extend(self.dependents(key));
         }
         for key in &uses {
-            entities.extend(self.mentions(key));
+            self.add_concerned_by_uses(key, &mut entities);
         }
         for id in entities {
             self.check(id);
+        }
+    }
+
+    /// Adds the entities to check again when `entities`, which are checked anyway, use a name more or less than before:
+    /// those that declare it, because nothing may use it now. Those that use it ask only whether others do, too, which
+    /// two that go on using it answer; so in a long file an edit in one of many users does not ask the rest. Nobody else
+    /// asks for the users of a name.
+    fn add_concerned_by_uses(&self, key: &Key, entities: &mut FxHashSet<EntityId>) {
+        let (file, kind, name) = key;
+        let mut others = self.users(*file, *kind, name).iter().filter(|user| !entities.contains(user));
+        let first = others.next();
+        if others.any(|user| Some(user) != first) {
+            entities.extend(self.definitions(*file, *kind, name));
+        } else {
+            entities.extend(self.facts.mentions(key));
         }
     }
 

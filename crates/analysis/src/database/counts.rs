@@ -76,6 +76,22 @@ fn renaming_a_robot_asks_only_those_who_use_it() {
 }
 
 #[test]
+fn one_use_more_or_less_is_of_no_interest_to_the_other_users() {
+    for users in [3, 300] {
+        let movement = |number| format!("movement m{number} of r {{ turn left until {{ front }} }}\n");
+        let program = "wheel a with radius 4\nsensor front : distance\n\
+                       robot r with port 1 has { a a } wheels with sensors { front }\n";
+        let text = program.to_owned() + &(0..users).map(movement).collect::<String>();
+        let mut database = Database::new();
+        let file = database.open("a.pyr", &text);
+        let (whole, cut) = ("m1 of r { turn left until { front", "m1 of r { turn left until { fron");
+        // The movement, and the sensor, which nothing might use now.
+        assert_eq!(replace(&mut database, file, whole, cut).revalidated, 2, "{users} users");
+        assert_eq!(replace(&mut database, file, &format!("{cut} "), &format!("{whole} ")).revalidated, 2);
+    }
+}
+
+#[test]
 fn an_entity_is_split_in_two() {
     let split = "environment e5 has { robot5 } robots\nenvironment x with { m5 } moves";
     assert_eq!(cost("environment e5 has { robot5 } robots with { m5 } moves", split), counts(51, 2, 4));

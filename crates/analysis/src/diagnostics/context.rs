@@ -183,10 +183,18 @@ impl<'a> Context<'a> {
         files.filter_map(|file| self.facts.definitions(file, kind, &name.text).first().copied()).collect()
     }
 
-    /// The entities of this file that use a name.
-    pub(super) fn users(&self, kind: EntityKind, name: &Name) -> &'a [EntityId] {
-        self.note_name(self.file, kind, name);
+    /// The entities of this file that use a name that this one declares. When they change, those that declare it are
+    /// checked again.
+    pub(super) fn users_of_own(&self) -> &'a [EntityId] {
+        let Some((kind, name)) = self.declared() else { return &[] };
         self.facts.users(self.file, kind, &name.text)
+    }
+
+    /// Returns whether this entity uses a name that others use, too. When the answer changes, those that use it are
+    /// checked again.
+    pub(super) fn shares_use(&self, kind: EntityKind, name: &Name) -> bool {
+        debug_assert!(self.is_own(kind, name), "of a name that the entity does not use nobody tells it");
+        self.facts.users(self.file, kind, &name.text).iter().any(|user| *user != self.id)
     }
 
     /// Returns whether a name is in text of this file that had to be skipped, where it may be a use or a declaration.

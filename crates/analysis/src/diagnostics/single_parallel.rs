@@ -1,6 +1,5 @@
 //! `single-parallel`: a parallel movement that never runs beside another.
 
-use pydslrep_syntax::EntityKind;
 use pydslrep_syntax::ast::{Entity, Environment, Name};
 
 use super::context::Context;
@@ -52,7 +51,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let (Some(parallel), Some(name)) = (movement.parallel, &movement.name) else { return };
     // A movement that another one does runs as a part of that one: only the lists of environments count.
     let listed = |user: &&EntityId| context.signature(**user).is_none_or(|user| user.movement().is_none());
-    let users: Vec<_> = context.users(EntityKind::Movement, name).iter().filter(listed).collect();
+    let users: Vec<_> = context.users_of_own().iter().filter(listed).collect();
     if !context.errors.is_empty() || users.is_empty() || context.is_imported() {
         return;
     }

@@ -1,7 +1,6 @@
 //! `unused-declaration`: a part that nothing uses.
 
 use pydslrep_syntax::EntityKind;
-use pydslrep_syntax::ast::Name;
 
 use super::context::Context;
 use super::problem::Problem;
@@ -50,7 +49,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let Some(place) = place_of(kind) else { return };
     let asked = context.has_environments() && !context.is_imported();
     // A name in text that was not understood may well be a use of it.
-    if !asked || context.is_skipped(kind, name) || !context.users(kind, name).is_empty() {
+    if !asked || context.is_skipped(kind, name) || !context.users_of_own().is_empty() {
         return;
     }
     let problem = RULE
@@ -94,10 +93,7 @@ fn users_of(kind: EntityKind) -> &'static [EntityKind] {
 
 /// Returns whether all that it uses is used elsewhere, too; otherwise removing it would only move the problem.
 fn leaves_nothing_unused(context: &Context<'_>) -> bool {
-    let is_used = |(kind, name): &(EntityKind, &Name)| {
-        context.users(*kind, name).iter().any(|user| *user != context.id)
-    };
-    context.references.iter().all(is_used)
+    context.references.iter().all(|(kind, name)| context.shares_use(*kind, name))
 }
 
 #[cfg(test)]
