@@ -151,7 +151,7 @@ pub(crate) fn fit(text: &Rope, span: Span) -> Span {
     let snap = |offset: u32| {
         let offset = offset.min(whole.end) as usize;
         let character = text.byte_to_char(offset);
-        u32::try_from(text.char_to_byte(character)).unwrap_or(whole.end)
+        pydslrep_text::offset(text.char_to_byte(character))
     };
     let start = snap(span.start);
     Span::new(start, snap(span.end.max(span.start)))

@@ -1,5 +1,6 @@
 //! Fixes tried on a copy of the database, to see what they leave.
 
+use pydslrep_syntax::offset;
 use std::collections::BTreeMap;
 
 use crate::{Database, Diagnostic, Edit, FileId, Fix, Severity};
@@ -121,7 +122,7 @@ impl FixValidator {
             let removed = self.tried.slice(edit.file, edit.span);
             self.tried.edit(edit.file, edit.span, &edit.text);
             self.steps += self.tried.last_edit().revalidated * STEPS_OF_A_CHECK;
-            let following = edit.span.start + u32::try_from(edit.text.len()).unwrap_or_default();
+            let following = edit.span.start + offset(edit.text.len());
             let grown = i64::from(following) - i64::from(edit.span.end);
             for later in back.iter_mut().filter(|later| later.file == edit.file) {
                 let moved = |offset: u32| u32::try_from(i64::from(offset) + grown).unwrap_or_default();

@@ -4,7 +4,7 @@
 
 use pydslrep_analysis::Snapshot;
 use pydslrep_syntax::ast::{Action, Entity, Movement};
-use pydslrep_syntax::{Span, TokenKind};
+use pydslrep_syntax::{Span, TokenKind, offset};
 
 use crate::cursor::body;
 
@@ -139,8 +139,8 @@ impl<'a> Folds<'a> {
 
     /// A span without its first line, which stays visible.
     fn after_first_line(&self, span: Span) -> Span {
-        let first = span.text(self.text).find(['\n', '\r']).and_then(|at| u32::try_from(at).ok());
-        Span::new(span.start + first.unwrap_or_else(|| span.len()), span.end)
+        let first = span.text(self.text).find(['\n', '\r']);
+        Span::new(span.start + first.map_or_else(|| span.len(), offset), span.end)
     }
 
     /// The text between braces; either or both may be missing.

@@ -122,8 +122,7 @@ pub(crate) fn lines(database: &Database, file: FileId, span: Span) -> Span {
     let last = text.line(line_of(span.end));
     let ending = last.chars_at(last.len_chars()).reversed().take_while(|c| matches!(c, '\n' | '\r')).count();
     let end = text.line_to_byte(line_of(span.end)) + last.len_bytes() - ending;
-    let offset = |byte: usize| u32::try_from(byte).unwrap_or(u32::MAX);
-    Span::new(offset(start), offset(end))
+    (start..end).into()
 }
 
 /// The hints of a movement. The ends of actions that are broken only because of what is in their blocks, or of what they

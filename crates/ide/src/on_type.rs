@@ -185,8 +185,7 @@ impl Line {
         let offset = (position.offset as usize).min(text.len_bytes());
         let start = text.line_to_byte(text.byte_to_line(offset));
         let blank = text.byte_slice(start..).bytes().take_while(|byte| matches!(byte, b' ' | b'\t')).count();
-        let to_u32 = |at: usize| u32::try_from(at).ok();
-        Some(Self { blank: Span::new(to_u32(start)?, to_u32(start + blank)?) })
+        Some(Self { blank: (start..start + blank).into() })
     }
 
     /// The indentation level of the line; `None` if unknown.

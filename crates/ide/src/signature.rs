@@ -7,7 +7,7 @@
 mod shape;
 
 use pydslrep_analysis::Database;
-use pydslrep_syntax::{EntityKind, Expected, Span, Token, TokenKind, expected_after};
+use pydslrep_syntax::{EntityKind, Expected, Span, Token, TokenKind, expected_after, offset};
 
 use self::shape::window;
 use crate::FilePosition;
@@ -201,7 +201,7 @@ fn parts(label: &'static str) -> Vec<Part> {
             text => {
                 // Both are slices of the label.
                 let start = text.as_ptr() as usize - label.as_ptr() as usize;
-                let span = Span::of(text).shifted(u32::try_from(start).unwrap_or(0));
+                let span = Span::of(text).shifted(offset(start));
                 match parts.last_mut() {
                     Some(last) if joins => {
                         last.span = last.span.to(span);

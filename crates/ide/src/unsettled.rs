@@ -5,7 +5,7 @@ use std::cell::OnceCell;
 
 use pydslrep_analysis::{Database, Diagnostic, EntityRef};
 use pydslrep_syntax::ast::{Entity, References};
-use pydslrep_syntax::{Expected, Span, Token, TokenKind, expected_after};
+use pydslrep_syntax::{Expected, Span, Token, TokenKind, expected_after, offset};
 
 use crate::FilePosition;
 use crate::cursor::body;
@@ -40,8 +40,8 @@ impl<'a> TypedStatement<'a> {
         let tokens: Vec<Token> = entity.parse.tokens.iter().map(in_file).collect();
         let text = database.text(position.file)?;
         let line = text.byte_to_line((place as usize).min(text.len_bytes()));
-        let begin = u32::try_from(text.line_to_byte(line)).ok()?;
-        let end = text.try_line_to_byte(line + 1).ok().and_then(|end| u32::try_from(end).ok())?;
+        let begin = offset(text.line_to_byte(line));
+        let end = offset(text.try_line_to_byte(line + 1).ok()?);
         let is_complete = |(token, span): &&Token| span.end < place || span.end == place && !is_word(*token);
         let before = tokens.iter().rfind(is_complete).map(|(_, span)| span.end);
         let gap = Span::new(before.unwrap_or(begin).max(begin), place);

@@ -2,11 +2,9 @@
 
 use std::borrow::Cow;
 
-use pydslrep_text::Span;
+use pydslrep_text::{Span, offset};
 use toml_parser::Source;
 use toml_parser::parser::{Event, EventKind, RecursionGuard, parse_document};
-
-use crate::toml::span;
 
 /// The maximum depth of nested values; deeper ones are ignored.
 const MAX_DEPTH: u32 = 16;
@@ -140,7 +138,7 @@ impl Section<'_> {
 
     fn span(self, event: &Event) -> Span {
         let range = event.span();
-        span(range.start()..range.end()).shifted(self.start)
+        Span::from(range.start()..range.end()).shifted(self.start)
     }
 }
 
@@ -157,7 +155,7 @@ fn sections(text: &str) -> Vec<Section<'_>> {
     }
     sections.push(start..at);
     let section =
-        |range: std::ops::Range<usize>| Section { text: &text[range.clone()], start: span(range).start };
+        |range: std::ops::Range<usize>| Section { text: &text[range.clone()], start: offset(range.start) };
     sections.into_iter().map(section).collect()
 }
 

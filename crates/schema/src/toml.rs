@@ -94,8 +94,8 @@ pub(crate) fn parse(text: &str, noun: &str) -> Result<Vec<Entry>, Problem> {
 fn toml_entries(table: &DeTable<'_>, depth: usize) -> Vec<Entry> {
     let entry = |(key, value): (&Spanned<_>, &Spanned<DeValue<'_>>)| Entry {
         key: String::from(std::borrow::Cow::as_ref(Spanned::get_ref(key))),
-        key_span: Some(span(key.span())),
-        node: Node { value: toml_value(value.get_ref(), depth + 1), span: Some(span(value.span())) },
+        key_span: Some(Span::from(key.span())),
+        node: Node { value: toml_value(value.get_ref(), depth + 1), span: Some(Span::from(value.span())) },
     };
     let mut entries: Vec<Entry> = table.iter().map(entry).collect();
     entries.sort_by_key(|entry| entry.key_span.map(|span| span.start));
@@ -112,7 +112,7 @@ fn toml_value(value: &DeValue<'_>, depth: usize) -> Value {
         DeValue::Array(array) if depth < MAX_DEPTH => {
             let node = |value: &Spanned<DeValue<'_>>| Node {
                 value: toml_value(value.get_ref(), depth + 1),
-                span: Some(span(value.span())),
+                span: Some(Span::from(value.span())),
             };
             Value::List(array.iter().map(node).collect())
         }
@@ -133,12 +133,6 @@ fn integer(number: &DeInteger<'_>) -> f64 {
 
 fn float(number: &DeFloat<'_>) -> f64 {
     number.as_str().parse().unwrap_or(f64::NAN)
-}
-
-/// A range as our crates have it; texts are smaller than 4 GiB.
-pub(crate) fn span(range: std::ops::Range<usize>) -> Span {
-    let offset = |offset| u32::try_from(offset).unwrap_or(u32::MAX);
-    Span::new(offset(range.start), offset(range.end))
 }
 
 /// A JSON value.
@@ -172,7 +166,7 @@ fn json_value(value: &serde_json::Value, depth: usize) -> Value {
 
 /// Returns the library's error, in words for people who may never have heard of TOML.
 fn invalid_toml(text: &str, noun: &str, error: &Error) -> Problem {
-    let span = error.span().map_or(Span::default(), self::span);
+    let span = error.span().map_or(Span::default(), Span::from);
     let (what, expected) = match error.message().split_once(", expected ") {
         Some((what, expected)) => (what, Some(expected)),
         None => (error.message(), None),

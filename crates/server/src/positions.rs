@@ -7,6 +7,7 @@
 use std::cell::Cell;
 
 use pydslrep_syntax::Span;
+use pydslrep_text::offset as to_u32;
 use ropey::{Rope, RopeSlice};
 use tower_lsp::ls_types::{Position, PositionEncodingKind, Range};
 
@@ -187,11 +188,6 @@ fn without_ending(line: RopeSlice<'_>) -> RopeSlice<'_> {
         end -= 1;
     }
     line.slice(..end)
-}
-
-/// Texts end before 4 GiB: a frame may not be longer than 256 MiB.
-fn to_u32(length: usize) -> u32 {
-    u32::try_from(length).unwrap_or(u32::MAX)
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! The server's state between two messages.
 
+use pydslrep_syntax::offset;
 use std::sync::Arc;
 
 use futures::channel::oneshot;
@@ -302,8 +303,7 @@ fn end_of_edit(
     encoding: Encoding,
 ) -> Option<Position> {
     let (event, change) = (events.last()?, changes.last()?);
-    let length = u32::try_from(event.text.len()).ok()?;
-    Some(to_position(&change.after, change.span?.start + length, encoding))
+    Some(to_position(&change.after, change.span?.start + offset(event.text.len()), encoding))
 }
 
 #[cfg(test)]

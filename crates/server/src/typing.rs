@@ -6,7 +6,7 @@
 //! several changes is typing with several cursors if all of them insert the same text; otherwise it is formatting or a
 //! rename, and the cursor has not moved.
 
-use pydslrep_syntax::Span;
+use pydslrep_syntax::{Span, offset};
 use ropey::Rope;
 use tower_lsp::ls_types::{Range, TextDocumentContentChangeEvent};
 
@@ -48,7 +48,7 @@ fn cursor_in(text: &str) -> u32 {
     } else {
         text.len()
     };
-    u32::try_from(end).unwrap_or(u32::MAX)
+    offset(end)
 }
 
 /// Returns the replacements of one message; `spans` has the range of each, `None` if the whole text was sent.
@@ -75,7 +75,6 @@ fn whole(before: &Rope, after: &Rope) -> Option<Replacement> {
     let rest = before.len_bytes().min(after.len_bytes()) - head;
     let (old, new) = (before.bytes_at(before.len_bytes()), after.bytes_at(after.len_bytes()));
     let tail = old.reversed().zip(new.reversed()).take(rest).take_while(|(a, b)| a == b).count();
-    let offset = |byte: usize| u32::try_from(byte).unwrap_or(u32::MAX);
     let span = Span::new(offset(head), offset(before.len_bytes() - tail));
     let length = offset(after.len_bytes() - tail - head);
     // Not a multiple of a character, if characters share bytes.
@@ -123,7 +122,7 @@ impl Typing {
             let start = text.line_to_byte(line);
             let content = text.line(line).chars().take_while(|c| !matches!(c, '\n' | '\r'));
             let end = start + content.map(char::len_utf8).sum::<usize>();
-            Span::new(u32::try_from(start).unwrap_or(u32::MAX), u32::try_from(end).unwrap_or(u32::MAX))
+            Span::from(start..end)
         };
         self.places.iter().map(line).collect()
     }

@@ -9,5 +9,5 @@ mod span;
 mod spelling;
 
 pub use position::LineColumn;
-pub use span::Span;
+pub use span::{Span, offset};
 pub use spelling::{closest, closest_of_any_order, is_similar};

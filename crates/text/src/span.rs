@@ -4,6 +4,12 @@ use std::ops::Range;
 
 use ropey::Rope;
 
+/// A place in a text, or a length, in bytes. Who reads a text refuses it beyond 4 GiB; here the rest of it counts as one
+/// place.
+pub fn offset(bytes: usize) -> u32 {
+    u32::try_from(bytes).unwrap_or(u32::MAX)
+}
+
 /// A half-open range of bytes in a text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub struct Span {
@@ -25,14 +31,14 @@ impl Span {
         Self { start: offset, end: offset }
     }
 
-    /// The range of a whole text. Texts beyond 4 GiB are for the reader of files to refuse; here they count as 4 GiB.
+    /// The range of a whole text.
     pub fn of(text: &str) -> Self {
-        Self { start: 0, end: u32::try_from(text.len()).unwrap_or(u32::MAX) }
+        (0..text.len()).into()
     }
 
     /// As [`Self::of`], of a rope.
     pub fn of_rope(text: &Rope) -> Self {
-        Self { start: 0, end: u32::try_from(text.len_bytes()).unwrap_or(u32::MAX) }
+        (0..text.len_bytes()).into()
     }
 
     /// Length in bytes.
@@ -68,6 +74,12 @@ impl Span {
     /// As [`Self::text`], of a rope.
     pub fn slice(self, text: &Rope) -> String {
         text.get_byte_slice(Range::from(self)).map_or_else(String::new, |slice| slice.to_string())
+    }
+}
+
+impl From<Range<usize>> for Span {
+    fn from(range: Range<usize>) -> Self {
+        Self::new(offset(range.start), offset(range.end))
     }
 }
 

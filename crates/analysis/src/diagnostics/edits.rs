@@ -1,7 +1,7 @@
 //! The edits of fixes: which text one replaces, and where it is once the fix gets its place.
 
 use pydslrep_syntax::ast::{Entity, References};
-use pydslrep_syntax::{Span, Token, TokenKind, escape};
+use pydslrep_syntax::{Span, Token, TokenKind, escape, offset};
 
 use super::context::Context;
 use super::problem::{ProblemFix, Renaming};
@@ -68,8 +68,7 @@ impl Context<'_> {
         match following.find(['\n', '\r']) {
             Some(end) => {
                 let end = end + if following[end..].starts_with("\r\n") { 2 } else { 1 };
-                let length = |bytes: usize| u32::try_from(bytes).unwrap_or_default();
-                self.replace(Span::new(comment.end + length(last_line), span.end + length(end)), "")
+                self.replace(Span::new(comment.end + offset(last_line), span.end + offset(end)), "")
             }
             None => self.replace(Span::new(span.start, next), ""),
         }
@@ -112,14 +111,14 @@ impl Context<'_> {
         let line_end = ["\r\n", "\n", "\r"].into_iter().find(|end| following[blank..].starts_with(end));
         let Some(line_end) = line_end else {
             let start = self.tokens.first().is_some_and(|(_, first)| first.start == span.start);
-            let blank = u32::try_from(blank).unwrap_or_default();
+            let blank = offset(blank);
             return if start {
                 self.replace(Span::new(span.start, span.end + blank), "")
             } else {
                 self.remove(span)
             };
         };
-        let taken = u32::try_from(blank + line_end.len()).unwrap_or_default();
+        let taken = offset(blank + line_end.len());
         self.replace(Span::new(span.start, span.end + taken), "")
     }
 
@@ -231,7 +230,7 @@ fn tidy_removal(facts: &Facts, file: FileId, span: Span) -> Span {
         return span;
     }
     let trailing = removed.len() - removed.trim_end().len();
-    Span::new(span.start + 1 - back, span.end - u32::try_from(trailing).unwrap_or_default())
+    Span::new(span.start + 1 - back, span.end - offset(trailing))
 }
 
 /// The text of an edit, with a space where a word in it, or beside a gap it leaves, would run into another one: before

@@ -1,6 +1,6 @@
 //! `unterminated-comment`: `/*` without `*/`.
 
-use pydslrep_syntax::{Span, SyntaxErrorKind};
+use pydslrep_syntax::{Span, SyntaxErrorKind, offset};
 
 use super::context::Context;
 use super::problem::Problem;
@@ -41,7 +41,7 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
                 |span| {
                     let text = context.text(*span);
                     let line = text.find(['\n', '\r']).unwrap_or(text.len());
-                    span.start + u32::try_from(line).unwrap_or(u32::MAX)
+                    span.start + offset(line)
                 },
             );
         problems.push(

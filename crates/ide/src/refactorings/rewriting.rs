@@ -1,7 +1,7 @@
 //! New text in an entity, in canonical layout.
 
 use pydslrep_analysis::Edit;
-use pydslrep_syntax::{Span, TextEdit, Token, apply_edits, format_edits, lex, parse};
+use pydslrep_syntax::{Span, TextEdit, Token, apply_edits, format_edits, lex, offset, parse};
 
 use super::Selection;
 
@@ -79,7 +79,7 @@ fn characters(text: &str) -> Vec<(Span, char)> {
     let mut found: Vec<(Span, char)> = Vec::new();
     let mut start = 0;
     for character in text.chars() {
-        let end = start + u32::try_from(character.len_utf8()).unwrap_or_default();
+        let end = start + offset(character.len_utf8());
         let follows_return = start > 0 && text.as_bytes().get(start as usize - 1) == Some(&b'\r');
         match found.last_mut() {
             Some((span, _)) if character == '\n' && follows_return => span.end = end,

@@ -23,6 +23,5 @@ pub(super) fn statement(text: &str, name: Span) -> Span {
             end += line.len();
         }
     }
-    let offset = |at: usize| u32::try_from(at).unwrap_or(u32::MAX);
-    Span::new(offset(start), offset(end))
+    (start..end).into()
 }

@@ -103,8 +103,7 @@ impl EntitySource<'_> {
         let end = written
             .rfind(foreign)
             .map_or(written.len(), |last| last + written[last..].chars().next().map_or(0, char::len_utf8));
-        let place = |offset: usize| span.start + u32::try_from(offset).unwrap_or_default();
-        Span::new(place(start), place(end))
+        Span::from(start..end).shifted(span.start)
     }
 
     /// Returns whether characters are inside text that was passed over: that is reported where it begins.
