@@ -15,6 +15,7 @@ mod scenes;
 use std::collections::BTreeMap;
 use std::ops::Deref;
 
+use pydslrep_syntax::Span;
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 
@@ -22,7 +23,7 @@ use self::dependencies::Dependencies;
 use self::postponed::Postponed;
 use self::problems::Problems;
 use self::scene_run::SceneRun;
-use crate::diagnostics::{self, EntityProblems, Rule};
+use crate::diagnostics::{self, EntityProblems, Extent, Rule};
 use crate::entity::{EntityId, FileId};
 use crate::facts::Facts;
 use crate::{Diagnostic, Severity};
@@ -77,7 +78,23 @@ impl Database {
 
     /// Returns the diagnostics of a file, in the order of the text.
     pub fn diagnostics(&self, file: FileId) -> Vec<Diagnostic> {
-        diagnostics::in_file(&self.facts, file, &self.problems_in(file), &self.planned_runs(file))
+        self.diagnostics_as_far_as(file, Extent::All)
+    }
+
+    /// Returns the diagnostics of a file to be shown, in the order of the text: fixes may be left out, which take most of the
+    /// time where there are many.
+    pub fn shown_diagnostics(&self, file: FileId) -> Vec<Diagnostic> {
+        self.diagnostics_as_far_as(file, Extent::WithoutFixes)
+    }
+
+    /// Returns the diagnostics of a file that touch a range, in the order of the text.
+    pub fn diagnostics_at(&self, file: FileId, range: Span) -> Vec<Diagnostic> {
+        self.diagnostics_as_far_as(file, Extent::Touching(range))
+    }
+
+    fn diagnostics_as_far_as(&self, file: FileId, extent: Extent) -> Vec<Diagnostic> {
+        let (problems, runs) = (self.problems_in(file), self.planned_runs(file));
+        diagnostics::in_file(&self.facts, file, &problems, &runs, extent)
     }
 
     /// Calls `visit` with the rule, the severity and the start of all [diagnostics](Self::diagnostics) of a file, in no

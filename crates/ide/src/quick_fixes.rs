@@ -19,12 +19,9 @@ const MAX_SUGGESTIONS: usize = 64;
 
 /// The fixes of all diagnostics that touch a range; the command offers the same ([`Offers`]).
 pub fn quick_fixes(database: &Database, file: FileId, range: Span) -> Vec<QuickFix> {
-    let touching =
-        |diagnostic: &Diagnostic| diagnostic.span.start <= range.end && range.start <= diagnostic.span.end;
-    let diagnostics = database.diagnostics(file).into_iter().filter(touching);
     let mut offers = Offers::new(database, MAX_SUGGESTIONS);
     let mut found = Vec::new();
-    for diagnostic in diagnostics {
+    for diagnostic in database.diagnostics_at(file, range) {
         let mut fixes = diagnostic.fixes.clone();
         fixes.retain(|fix| offers.include(&diagnostic, fix));
         let is_only = fixes.len() == 1;

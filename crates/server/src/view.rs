@@ -81,7 +81,7 @@ impl View {
         };
         let statements = self.statements_being_typed(document);
         let Some(file) = document.file.filter(|_| !statements.is_empty()) else { return false };
-        let found = self.database().diagnostics(file);
+        let found = self.database().shown_diagnostics(file);
         let mut errors = found.iter().filter(|found| found.severity == Severity::Error);
         errors.any(|error| statements.iter().any(|statement| statement.settles(error)))
     }

@@ -71,5 +71,5 @@ pub use self::nested_too_deep::MAX_BLOCK_DEPTH;
 pub use self::not_in_article::beyond_article;
 pub(crate) use self::planned_run::PlannedRun;
 pub(crate) use self::problem::{EntityProblems, Problem};
-pub(crate) use self::reported::{in_entity, in_file, of_entities, visit_in_file};
+pub(crate) use self::reported::{Extent, in_entity, in_file, of_entities, visit_in_file};
 pub use self::rule::{Applicability, Page, Rule, Tag};

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use pydslrep_syntax::Span;
+
 use super::catalogue::CATALOGUE;
 use super::consequences::Consequences;
 use super::context::Context;
@@ -36,24 +38,46 @@ struct Reported<'a> {
     is_nested: bool,
 }
 
-/// The problems of a file with absolute places: of its entities, in the order of the text, and of the planned runs that it is
-/// part of.
+/// Which diagnostics of a file are wanted, and how much of them. To find the places of fixes takes most of the time.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Extent {
+    /// All, with their fixes.
+    All,
+    /// All, to be shown only: the fixes of entities are left out.
+    WithoutFixes,
+    /// Those that touch a range, with their fixes.
+    Touching(Span),
+}
+
+impl Extent {
+    fn includes(self, span: Span) -> bool {
+        match self {
+            Self::All | Self::WithoutFixes => true,
+            Self::Touching(range) => span.start <= range.end && range.start <= span.end,
+        }
+    }
+}
+
+/// The problems of a file with absolute places: of its entities, which are in the order of the text, and of the planned
+/// runs that it is part of.
 pub(crate) fn in_file(
     facts: &Facts,
     file: FileId,
     entities: &[EntityProblems<'_>],
     runs: &[Arc<PlannedRun>],
+    extent: Extent,
 ) -> Vec<Diagnostic> {
-    let located =
-        reported(facts, file, entities).into_iter().map(|Reported { start, problem, is_nested }| {
-            let mut diagnostic = located(facts, file, start, problem);
-            if is_nested {
-                syntax_error::nested(&mut diagnostic);
-            }
-            diagnostic
-        });
+    let reported = reported(facts, file, entities).into_iter();
+    let wanted = reported.filter(|found| extent.includes(found.problem.span.shifted(found.start)));
+    let located = wanted.map(|Reported { start, problem, is_nested }| {
+        let mut diagnostic = located(facts, file, start, problem, extent);
+        if is_nested {
+            syntax_error::nested(&mut diagnostic);
+        }
+        diagnostic
+    });
     let mut diagnostics: Vec<Diagnostic> = located.collect();
-    diagnostics.extend(beyond_entities(facts, file, runs));
+    diagnostics.extend(beyond_entities(facts, file, runs).into_iter().filter(|it| extent.includes(it.span)));
     diagnostics.sort_by_key(|diagnostic| diagnostic.span.start);
     diagnostics
 }
@@ -117,12 +141,15 @@ fn reported<'a>(facts: &Facts, file: FileId, entities: &[EntityProblems<'a>]) ->
 pub(crate) fn of_entities(facts: &Facts, entities: &[EntityProblems<'_>]) -> Vec<Diagnostic> {
     let located = |EntityProblems { entity, problems }: &EntityProblems<'_>| {
         let (file, start) = (entity.file, entity.span.start);
-        problems.iter().map(move |problem| located(facts, file, start, problem)).collect::<Vec<_>>()
+        problems
+            .iter()
+            .map(move |problem| located(facts, file, start, problem, Extent::All))
+            .collect::<Vec<_>>()
     };
     entities.iter().flat_map(located).collect()
 }
 
-fn located(facts: &Facts, file: FileId, start: u32, problem: &Problem) -> Diagnostic {
+fn located(facts: &Facts, file: FileId, start: u32, problem: &Problem, extent: Extent) -> Diagnostic {
     let related = problem.related.iter().filter_map(|related| {
         let (file, span) = absolute(facts, related.entity, related.span)?;
         Some(Related { file, span, message: related.message.clone() })
@@ -136,6 +163,9 @@ fn located(facts: &Facts, file: FileId, start: u32, problem: &Problem) -> Diagno
         help: problem.help.clone(),
         note: problem.note.clone(),
         related: related.collect(),
-        fixes: problem.fixes.iter().filter_map(|fix| edits::located(facts, fix)).collect(),
+        fixes: match extent {
+            Extent::WithoutFixes => Vec::new(),
+            _ => problem.fixes.iter().filter_map(|fix| edits::located(facts, fix)).collect(),
+        },
     }
 }

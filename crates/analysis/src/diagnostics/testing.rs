@@ -49,6 +49,7 @@ fn check_those(program: &str, expected: &Expect, asked: fn(&Diagnostic) -> bool)
         let mut database = Database::new();
         let file = database.open("test.pyr", text);
         let mut diagnostics = database.diagnostics(file);
+        check_extents(&database, file, &diagnostics);
         diagnostics.retain(asked);
         (file, diagnostics)
     };
@@ -65,6 +66,21 @@ fn check_those(program: &str, expected: &Expect, asked: fn(&Diagnostic) -> bool)
             let after = apply(program, file, &fix.edits);
             check_fix(program, &diagnostics, diagnostic, &after, &problems(&after).1);
         }
+    }
+}
+
+/// What is shown differs from all that is known by fixes only, and at each problem's place the problem is found.
+fn check_extents(database: &Database, file: FileId, all: &[Diagnostic]) {
+    let unfixed = |diagnostic: &Diagnostic| Diagnostic { fixes: Vec::new(), ..diagnostic.clone() };
+    let shown: Vec<Diagnostic> = database.shown_diagnostics(file).iter().map(unfixed).collect();
+    assert_eq!(shown, all.iter().map(unfixed).collect::<Vec<_>>());
+    for diagnostic in all {
+        let at = database.diagnostics_at(file, diagnostic.span);
+        assert!(at.contains(diagnostic), "{diagnostic:#?} is not among {at:#?}");
+        let touches = |found: &Diagnostic| {
+            found.span.touches(diagnostic.span.start) || diagnostic.span.touches(found.span.start)
+        };
+        assert!(at.iter().all(touches));
     }
 }
 

@@ -153,7 +153,7 @@ struct Unsettled {
 /// All diagnostics of a document, as this client can show them. Of the statement being typed, what its next word will
 /// settle is marked where the client pulls, and otherwise left out.
 pub(crate) fn of_document(view: &View, document: Document<'_>) -> Vec<Diagnostic> {
-    let found = document.file.map(|file| view.database().diagnostics(file)).unwrap_or_default();
+    let found = document.file.map(|file| view.database().shown_diagnostics(file)).unwrap_or_default();
     let statements = if found.is_empty() { Vec::new() } else { view.statements_being_typed(document) };
     let in_program = found.iter().filter_map(|diagnostic| {
         let Some(statement) = statements.iter().find(|statement| statement.settles(diagnostic)) else {

@@ -2,6 +2,7 @@
 
 use pydslrep_syntax::{EntityKind, KEYWORDS, Span, SyntaxErrorKind, Token, TokenKind, lex, parse};
 use pydslrep_text::is_similar;
+use smol_str::SmolStr;
 
 use crate::diagnostics::context::Context;
 use crate::diagnostics::rewritten::Rewrite;
@@ -15,7 +16,7 @@ const MAX_TOKENS: usize = 64;
 pub(super) struct Word {
     pub(super) token: TokenKind,
     pub(super) span: Span,
-    pub(super) text: String,
+    pub(super) text: SmolStr,
 }
 
 impl Word {
@@ -44,7 +45,7 @@ pub(super) fn words_of(context: &Context<'_>, tokens: &[Token]) -> Option<Vec<Wo
     }
     let mut words: Vec<Word> = Vec::new();
     for &(token, span) in tokens {
-        let text = context.text(span).to_owned();
+        let text = SmolStr::new(context.text(span));
         match (token, &mut words[..]) {
             (TokenKind::Integer, [.., whole, comma])
                 if whole.token == TokenKind::Integer
@@ -54,11 +55,11 @@ pub(super) fn words_of(context: &Context<'_>, tokens: &[Token]) -> Option<Vec<Wo
             {
                 whole.token = TokenKind::Float;
                 whole.span = whole.span.to(span);
-                whole.text = format!("{}.{text}", whole.text);
+                whole.text = smol_str::format_smolstr!("{}.{text}", whole.text);
                 words.pop();
             }
             (TokenKind::String, _) => {
-                let text = text.trim_matches('"').to_owned();
+                let text = SmolStr::new(text.trim_matches('"'));
                 let token = lex(&text).first().map_or(TokenKind::String, |(token, _)| *token);
                 words.push(Word { token, span, text });
             }
@@ -110,7 +111,7 @@ impl Difference {
             let is_expected = |keyword: &&str| is_similar(&word.text, keyword);
             let run = runs.iter_mut().find(|run| run.iter().any(&is_expected));
             let expected = run.and_then(|run| Some(run.remove(run.iter().position(is_expected)?)));
-            respelt.extend(expected.map(|expected| (word.text.clone(), expected.to_owned())));
+            respelt.extend(expected.map(|expected| (word.text.to_string(), expected.to_owned())));
             expected.is_none()
         });
         runs.retain(|run| !run.is_empty());
@@ -118,8 +119,8 @@ impl Difference {
         let listed = text.contains('{');
         let mut extra: Vec<String> = Vec::new();
         for word in left.into_iter().filter(|word| !(listed && word.token == TokenKind::Comma)) {
-            if !extra.contains(&word.text) {
-                extra.push(word.text.clone());
+            if !extra.iter().any(|other| *other == word.text) {
+                extra.push(word.text.to_string());
             }
         }
         Self { missing: runs.iter().map(|run| run.join(" ")).collect(), extra, respelt }
