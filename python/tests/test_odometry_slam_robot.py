@@ -172,35 +172,37 @@ def test_a_robot_makes_room_before_it_turns() -> None:
     assert not robot.touched
 
 
-def test_readings_move_with_the_keyframes() -> None:
+START, END = Pose(0.0, 0.0, 0.0), Pose(2.0, 0.0, 0.0)
+
+
+def log_of_a_straight_drive(*, is_valid: bool = True) -> ScanLog:
+    """The readings from the start to the end, between two keyframes."""
     log = ScanLog()
-    start, end = Pose(0.0, 0.0, 0.0), Pose(2.0, 0.0, 0.0)
-    log.add(start, AHEAD)
-    log.add_keyframe(start, start)
+    log.add(START, AHEAD)
+    log.add_keyframe(START, START)
     for x in (0.0, 1.0, 2.0):
         log.add(Pose(x, 0.0, 0.0), AHEAD)
-    log.add_keyframe(end, end)
+    log.add_keyframe(END, END, is_valid=is_valid)
+    return log
+
+
+def test_readings_move_with_the_keyframes() -> None:
+    log = log_of_a_straight_drive()
     straight = OccupancyGrid(0.05)
-    log.replay(straight, [start, end])
+    log.replay(straight, [START, END])
     assert straight.has_clearance(1.3, 0.0)
     assert not straight.has_clearance(1.3, 0.5)
     # The second keyframe moves a metre to the left: halfway, that is half a metre.
     bent = OccupancyGrid(0.05)
-    log.replay(bent, [start, Pose(2.0, 1.0, 0.0)])
+    log.replay(bent, [START, Pose(2.0, 1.0, 0.0)])
     assert bent.has_clearance(1.3, 0.5)
     assert not bent.has_clearance(1.3, -0.3)
 
 
 def test_readings_are_dropped_where_odometry_has_failed() -> None:
-    log = ScanLog()
-    start, end = Pose(0.0, 0.0, 0.0), Pose(2.0, 0.0, 0.0)
-    log.add(start, AHEAD)
-    log.add_keyframe(start, start)
-    for x in (0.0, 1.0, 2.0):
-        log.add(Pose(x, 0.0, 0.0), AHEAD)
-    log.add_keyframe(end, end, is_valid=False)
+    log = log_of_a_straight_drive(is_valid=False)
     grid = OccupancyGrid(0.05)
-    log.replay(grid, [start, end])
+    log.replay(grid, [START, END])
     assert not grid.has_clearance(1.3, 0.0)
     assert grid.has_clearance(2.3, 0.0)
 
