@@ -88,7 +88,7 @@ fn misspelt(context: &Context<'_>, span: Span, written: &str, keyword: TokenKind
     let message = if is_keyword {
         format!("`{written}` does not fit here; did you mean `{word}`?")
     } else if written.eq_ignore_ascii_case(word) {
-        format!("small and capital letters count as different: this word is written `{word}`")
+        format!("keywords are case-sensitive: this one is `{word}`")
     } else {
         format!("`{written}` is not a keyword; did you mean `{word}`?")
     };
