@@ -129,7 +129,7 @@ impl Database {
 
     /// Returns the number of entities of a file that have problems.
     pub fn count_with_problems(&self, file: FileId) -> usize {
-        self.problems.in_file(file).len()
+        self.problems.count(file)
     }
 
     /// The entities of a file that have problems, with these, in the order of the text.

@@ -4,14 +4,22 @@
 mod absences;
 mod change;
 mod edited;
+pub(crate) mod file;
 mod import_index;
 mod imports;
+pub(crate) mod keys;
+mod names;
 mod references;
 mod scenes;
+pub(crate) mod script_name;
 mod scripts;
+mod slots;
+mod snapshot;
 
 pub use self::absences::Absence;
 pub(crate) use self::edited::Edited;
+pub(crate) use self::slots::EntitySlot;
+pub use self::snapshot::Snapshot;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -23,13 +31,12 @@ use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
 
 use self::absences::Absences;
+use self::file::File;
 use self::import_index::ImportIndex;
+use self::keys::Key;
+use self::names::Names;
+use self::script_name::ScriptNames;
 use crate::entity::{EntityId, EntityRef, FileId, Resolution};
-use crate::file::File;
-use crate::keys::Key;
-use crate::names::Names;
-use crate::script_name::ScriptNames;
-use crate::slots::EntitySlot;
 use crate::{Edition, Target, check_cancelled};
 
 #[derive(Debug, Clone)]

@@ -4,7 +4,7 @@ use pydslrep_syntax::EntityKind;
 use smallvec::SmallVec;
 
 use crate::entity::EntityId;
-use crate::keys::Key;
+use crate::facts::keys::Key;
 
 /// Where an entity's problems come from, beside the entity itself, the names it declares or uses (the index of names has
 /// those), and the facts of its file that invalidate the whole file when they change. When one of these changes, the

@@ -12,9 +12,9 @@ use smol_str::SmolStr;
 
 use super::{Database, EditCounts};
 use crate::entity::{EntityId, FileId};
+use crate::facts::file::fit;
+use crate::facts::keys::{Key, defined_key, hidden_keys, used_keys, visible_keys};
 use crate::facts::{Absence, Edited};
-use crate::file::fit;
-use crate::keys::{Key, defined_key, hidden_keys, used_keys, visible_keys};
 use crate::reads::Kinds;
 use crate::signature::Signature;
 use crate::summary::Summary;

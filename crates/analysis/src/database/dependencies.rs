@@ -4,7 +4,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use smallvec::SmallVec;
 
 use crate::entity::EntityId;
-use crate::keys::Key;
+use crate::facts::keys::Key;
 use crate::reads::{Kinds, Reads};
 
 /// Most are read by a few; those need no memory of their own.

@@ -22,9 +22,13 @@ impl Problems {
     }
 
     /// The entities of a file that have problems, in no order.
-    pub(super) fn in_file(&self, file: FileId) -> impl ExactSizeIterator<Item = EntityId> {
-        static NONE: std::sync::LazyLock<FxHashSet<EntityId>> = std::sync::LazyLock::new(FxHashSet::default);
-        self.in_files.get(&file).unwrap_or(&NONE).iter().copied()
+    pub(super) fn in_file(&self, file: FileId) -> impl Iterator<Item = EntityId> {
+        self.in_files.get(&file).into_iter().flatten().copied()
+    }
+
+    /// Returns the number of entities of a file that have problems.
+    pub(super) fn count(&self, file: FileId) -> usize {
+        self.in_files.get(&file).map_or(0, FxHashSet::len)
     }
 
     /// Returns whether a problem of a file has a fix that renames something, also in the files that import it.

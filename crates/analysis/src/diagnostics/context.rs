@@ -10,8 +10,8 @@ use smol_str::SmolStr;
 
 use super::rewritten::Rewrite;
 use crate::defaults::drive;
+use crate::facts::script_name::ScriptName;
 use crate::reads::Reads;
-use crate::script_name::ScriptName;
 use crate::signature::{MovementSignature, Signature};
 use crate::summary::Summary;
 use crate::{Absence, Edition, EntityId, Facts, FileId, Resolution, Target};

@@ -5,7 +5,7 @@ use pydslrep_syntax::ast::{Entity, Name};
 use super::context::Context;
 use super::problem::Problem;
 use super::rule::{Applicability, Checks, Page, Rule};
-use crate::script_name::{Obstacle, obstacle};
+use crate::facts::script_name::{Obstacle, obstacle};
 use crate::{EntityId, Severity};
 
 pub(super) static RULE: Rule = Rule {

@@ -10,9 +10,9 @@ use ropey::Rope;
 use super::edited::Edited;
 use super::{EntityData, Facts};
 use crate::entity::{EntityId, FileId};
-use crate::file::{File, Window, fit};
-use crate::keys::{defined_key, used_keys};
-use crate::slots::{EntitySlot, EntitySlots};
+use crate::facts::file::{File, Window, fit};
+use crate::facts::keys::{defined_key, used_keys};
+use crate::facts::slots::{EntitySlot, EntitySlots};
 use crate::{Edition, Target};
 
 /// The space between the orders of two neighbours in a fresh file.

@@ -6,7 +6,7 @@ use smol_str::SmolStr;
 
 use super::Facts;
 use crate::entity::{EntityId, FileId};
-use crate::script_name::{NamesOfFile, Obstacle, ScriptName, obstacle, script_names};
+use crate::facts::script_name::{NamesOfFile, Obstacle, ScriptName, obstacle, script_names};
 
 impl Facts {
     /// Returns the name of an environment's script, and the environment that already has the usual one, if any. Most

@@ -6,7 +6,7 @@ use pydslrep_syntax::{LOOKAHEAD, Parse, Span, TokenKind, cut, lex, parse, parse_
 use ropey::Rope;
 
 use crate::entity::EntityId;
-use crate::slots::EntitySlots;
+use crate::facts::slots::EntitySlots;
 
 /// One document.
 #[derive(Debug, Clone)]

@@ -8,7 +8,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 
 use crate::entity::{EntityId, FileId};
-use crate::keys::Key;
+use crate::facts::keys::Key;
 
 /// Modules of Python 3.11 to 3.14.
 static STANDARD_MODULES: LazyLock<FxHashSet<&str>> =

@@ -44,7 +44,7 @@ impl Facts {
             at += slot.len;
             begins <= end
         });
-        let keep = |slot: &crate::slots::EntitySlot| {
+        let keep = |slot: &crate::facts::slots::EntitySlot| {
             let parse = Arc::clone(self.shared_parse(slot.entity)?);
             Some(Kept { entity: slot.entity, len: slot.len, parse })
         };

@@ -8,7 +8,7 @@ use smallvec::SmallVec;
 use smol_str::SmolStr;
 
 use crate::entity::{EntityId, FileId};
-use crate::keys::Key;
+use crate::facts::keys::Key;
 
 /// The index of names over all files. Names of different files never meet here; what an import makes visible is
 /// looked up file by file.
