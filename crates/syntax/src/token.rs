@@ -292,6 +292,10 @@ impl TokenKind {
         Self::Within,
     ];
 
+    /// The tokens that are written where a number belongs.
+    pub(crate) const NUMBERS: TokenSet =
+        TokenSet::of(&[Self::Integer, Self::Float, Self::Ipv4, Self::MalformedNumber]);
+
     /// The tokens that can be where a name is expected.
     pub(crate) const NAMES: TokenSet =
         TokenSet::of(&[Self::Name, Self::MalformedName]).or(TokenSet::of(&Self::CONTEXTUAL));
@@ -334,6 +338,16 @@ impl TokenKind {
             Self::Do => &["do MOVEMENT"],
             Self::Slam => &["slam"],
             _ => &[],
+        }
+    }
+
+    /// What follows the keyword of an action and never a name: before it, a keyword that can be a name is none. Nothing for
+    /// those that are never names, and for `do`, which a name follows.
+    pub const fn only_before(self) -> TokenSet {
+        match self {
+            Self::Wait | Self::Repeat => Self::NUMBERS.or(TokenSet::of(&[Self::Until])),
+            Self::If => TokenSet::of(&[Self::OpenBrace]),
+            _ => TokenSet(0),
         }
     }
 
@@ -394,7 +408,7 @@ impl TokenKind {
 
     /// Returns whether it is written where a number belongs.
     pub fn is_number(self) -> bool {
-        matches!(self, Self::Integer | Self::Float | Self::Ipv4 | Self::MalformedNumber)
+        Self::NUMBERS.has(self)
     }
 
     /// The kind of entity this keyword begins.
