@@ -14,7 +14,9 @@ add-highlighter shared/pydslrep/code/ regex '(?<![\w^])(wheel|wheelH|with|radius
 add-highlighter shared/pydslrep/code/ regex '^\h*(import)\h*(?=")' 1:keyword
 add-highlighter shared/pydslrep/code/ regex ':\s*(distance|bumper)(?!\w)' 1:keyword
 # Contextual keywords, as far as their neighbours tell; each is a name elsewhere.
+# The actions before a number, which crates/syntax/tests/keywords.rs writes.
 add-highlighter shared/pydslrep/code/ regex '(?<!ip\s)(?<![\w^])(wait|repeat)\s+(?:-?\d+(?:\.\d+)?(?![.\d])|until(?!\w))' 1:keyword
+# End of the actions before a number.
 add-highlighter shared/pydslrep/code/ regex '(?<![\w^.])-?\d+(?:\.\d+)?\s*(seconds|times)(?!\w)' 1:keyword
 add-highlighter shared/pydslrep/code/ regex '(?<!of\s)(?<![\w^])(if)\s*\{' 1:keyword
 add-highlighter shared/pydslrep/code/ regex '\}\s*(else)(?!\w)' 1:keyword

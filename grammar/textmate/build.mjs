@@ -26,7 +26,8 @@ const entities = ["wheel", "wheelH", "sensor", "ip", "robot", "parallel", "movem
 const oneOf = (words) => `(?:${words.join("|")})(?![\\p{L}\\p{M}\\p{N}_]|[-.'’][\\p{L}_])`;
 const name = `(?:\\^[A-Za-z_][A-Za-z0-9_]*|(?!${oneOf(keywords)})[A-Za-z_][A-Za-z0-9_]*)`;
 // An action's first words that are followed by what no name is followed by: where a name is wanted, it is missing.
-const missing = `(?=(?:wait|repeat)\\s+(?:-?[0-9]|${oneOf(["until"])})|if\\s*\\{)`;
+const counted = [...rules.matchAll(/= "([a-z]+)" (?:\( )?Number/g)].map(([, word]) => word);
+const missing = `(?=(?:${counted.filter((word) => contextual.includes(word)).join("|")})\\s+(?:-?[0-9]|${oneOf(["until"])})|if\\s*\\{)`;
 const nextEntity = `(?=${oneOf(entities)}|import(?=[ \\t]*"))`;
 
 const word = "[\\p{L}_][\\p{L}\\p{M}\\p{N}_]*";

@@ -49,7 +49,7 @@ impl Statements {
         let is_action = kind.is_action();
         // The brace of a list may be missing.
         self.in_list &=
-            !(is_action && (!kind.is_name() || next.is_some_and(|next| follows_only(kind, next))));
+            !(is_action && (!kind.is_name() || next.is_some_and(|next| kind.only_before().has(next))));
         match kind {
             _ if self.in_list => {
                 self.in_list = kind != TokenKind::CloseBrace;
@@ -77,17 +77,8 @@ impl Statements {
     }
 }
 
-/// Returns whether `next` can follow the keyword of an action and cannot be a name.
-fn follows_only(action: TokenKind, next: TokenKind) -> bool {
-    match action {
-        TokenKind::Wait | TokenKind::Repeat => next.is_number() || next == TokenKind::Until,
-        TokenKind::If => next == TokenKind::OpenBrace,
-        _ => false,
-    }
-}
-
 fn is_name_after_do(kind: TokenKind, next: Option<TokenKind>) -> bool {
-    kind.is_name() && !next.is_some_and(|next| follows_only(kind, next))
+    kind.is_name() && !next.is_some_and(|next| kind.only_before().has(next))
 }
 
 #[cfg(test)]

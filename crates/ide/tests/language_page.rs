@@ -8,19 +8,24 @@ use std::path::Path;
 
 use expect_test::expect_file;
 use pydslrep_ide::{KeywordPage, keyword_page};
-use pydslrep_syntax::KEYWORDS;
+use pydslrep_syntax::{KEYWORDS, TokenKind};
 
 const GRAMMAR: &str = include_str!("../../../grammar/pydslrep.ebnf");
 const START: &str = "<!-- from the code: ";
 const END: &str = "<!-- end -->";
 
-/// Returns the text between the comments with this name: a keyword, `keywords` or `grammar`.
+/// Returns the text between the comments with this name: a keyword, `contextual`, `keywords` or `grammar`.
 fn generated(name: &str) -> String {
     match name {
         "grammar" => format!("```ebnf\n{GRAMMAR}```"),
+        "contextual" => TokenKind::CONTEXTUAL.map(quoted).join(", "),
         "keywords" => table(),
         word => section(&page_of(word)),
     }
+}
+
+fn quoted(token: TokenKind) -> String {
+    format!("`{}`", token.spelling().unwrap())
 }
 
 fn page_of(word: &str) -> KeywordPage {
@@ -58,4 +63,11 @@ fn the_language_page_is_up_to_date() {
         write!(expected, "{START}{name} -->\n\n{}\n\n{END}{after}", generated(name)).unwrap();
     }
     expect_file![path].assert_eq(&expected);
+    for token in TokenKind::ACTIONS.into_iter().chain(TokenKind::DRIVES) {
+        let (mark, word) = (format!("{START}{} -->", token.spelling().unwrap()), quoted(token));
+        assert!(
+            page.contains(&mark),
+            "docs/language.md has no section of {word}: write `{mark}` and `{END}` below a heading"
+        );
+    }
 }

@@ -245,6 +245,7 @@ fn require_positive(what: &'static str, value: f64) -> Result<(), ModelError> {
 #[cfg(test)]
 pub(crate) mod tests {
     use proptest::prelude::*;
+    use pydslrep_robots::MAX_WHEELS;
 
     use super::*;
 
@@ -325,7 +326,7 @@ pub(crate) mod tests {
         #[test]
         fn forward_undoes_inverse(
             drive in prop::sample::select(Drive::ALL.to_vec()),
-            radii in prop::collection::vec(0.01..0.5, 4),
+            radii in prop::collection::vec(0.01..0.5, MAX_WHEELS),
             track in 0.05..2.0, wheelbase in 0.05..2.0, scrub in 0.5..2.0,
             vx in -2.0..2.0, vy in -2.0..2.0, omega in -5.0..5.0,
         ) {

@@ -55,11 +55,13 @@ impl Traction {
 /// Plans and scripts take its track to be wider by this factor; scripts compute it from where they find the wheels, with
 /// the friction of its type (`python/pydslrep_runtime/drives.py`).
 pub fn scrub_factor(drive: Drive, geometry: Geometry, lateral_friction: f64) -> f64 {
-    if drive.row().scrubs() {
-        1.0 + lateral_friction * (geometry.wheelbase / geometry.track).powi(2)
-    } else {
-        1.0
+    let row = drive.row();
+    if !row.scrubs() {
+        return 1.0;
     }
+    let square = |of: fn(&WheelPlace) -> f64| row.wheels.iter().map(|wheel| of(wheel).powi(2)).sum::<f64>();
+    let ahead = square(|wheel| wheel.ahead) / square(|wheel| wheel.left);
+    1.0 + lateral_friction * ahead * (geometry.wheelbase / geometry.track).powi(2)
 }
 
 /// The direction in which a wheel pushes the robot: along it, or along the axis of a mecanum wheel's rollers, which form
@@ -87,16 +89,15 @@ mod tests {
 
     #[test]
     fn a_skid_steered_robot_turns_less_than_its_wheels() {
-        let turn = |lateral_friction| {
-            Traction::new(Drive::FourWheel, GEOMETRY, lateral_friction)
-                .twist(&[-0.15, -0.15, 0.15, 0.15])
-                .omega
-        };
-        assert!((turn(0.0) - 1.0).abs() < 1e-12);
-        for lateral_friction in [0.3, 1.0] {
-            let factor = scrub_factor(Drive::FourWheel, GEOMETRY, lateral_friction);
-            assert!((turn(lateral_friction) - 1.0 / factor).abs() < 1e-12, "{}", turn(lateral_friction));
+        for drive in Drive::ALL.into_iter().filter(|drive| drive.row().scrubs()) {
+            let rims: Vec<f64> = drive.row().wheels.iter().map(|wheel| -0.15 * wheel.left).collect();
+            for lateral_friction in [0.0, 0.3, 1.0] {
+                let turn = Traction::new(drive, GEOMETRY, lateral_friction).twist(&rims).omega;
+                let factor = scrub_factor(drive, GEOMETRY, lateral_friction);
+                assert!((turn - 1.0 / factor).abs() < 1e-12, "{drive:?}: {turn}");
+            }
         }
+        assert!((scrub_factor(Drive::FourWheel, GEOMETRY, 0.0) - 1.0).abs() < 1e-12);
         assert!((scrub_factor(Drive::FourWheel, GEOMETRY, 1.0) - 1.694).abs() < 1e-3);
     }
 
@@ -126,11 +127,11 @@ mod tests {
         #[test]
         fn without_grip_it_is_the_ideal_model(
             drive in prop::sample::select(Drive::ALL.to_vec()),
-            rates in prop::collection::vec(-5.0..5.0, 4), track in 0.1..1.0, wheelbase in 0.1..1.0,
+            rates in prop::collection::vec(-5.0..5.0, MAX_WHEELS), track in 0.1..1.0, wheelbase in 0.1..1.0,
         ) {
             let geometry = Geometry { track, wheelbase };
             let rates = &rates[..drive.wheel_count()];
-            let model = Model::new(drive, &[1.0; 4][..drive.wheel_count()], geometry).unwrap();
+            let model = Model::new(drive, &[1.0; MAX_WHEELS][..drive.wheel_count()], geometry).unwrap();
             let twist = Traction::new(drive, geometry, 0.0).twist(rates);
             prop_assert!(close(twist, model.forward(&Setting::of_rates(rates)), 1e-9), "{:?}", twist);
         }
@@ -138,7 +139,7 @@ mod tests {
         #[test]
         fn nothing_is_gained_by_slipping(
             drive in prop::sample::select(Drive::ALL.to_vec()),
-            rims in prop::collection::vec(-1.0..1.0, 4), lateral_friction in 0.0..1.0,
+            rims in prop::collection::vec(-1.0..1.0, MAX_WHEELS), lateral_friction in 0.0..1.0,
         ) {
             let rims = &rims[..drive.wheel_count()];
             let twist = Traction::new(drive, GEOMETRY, lateral_friction).twist(rims);

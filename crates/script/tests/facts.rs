@@ -12,6 +12,18 @@ fn the_package_has_the_types_of_robots_and_the_figures_of_this_program() {
     expect_file!["../../../python/pydslrep_runtime/facts.py"].assert_eq(&(figures() + &robot_types()));
 }
 
+#[test]
+fn a_long_tuple_has_a_line_for_each_item() {
+    let items = |count: usize| vec!["\"right_middle\"".to_owned(); count];
+    assert_eq!(tuple("wheels", &items(2)), "(\"right_middle\", \"right_middle\")");
+    let last_on_a_line = tuple("wheels", &items(4));
+    assert_eq!((last_on_a_line.lines().count(), last_on_a_line.len()), (1, 64));
+    assert_eq!(
+        tuple("wheels", &items(5)),
+        format!("(\n{}        )", "            \"right_middle\",\n".repeat(5))
+    );
+}
+
 fn figures() -> String {
     format!(
         r#""""Types of robots, and figures of scenes and motion, as the command has them.
@@ -56,6 +68,17 @@ fn ros2() -> String {
     defaults.map(line).collect()
 }
 
+/// A tuple after the name of a field, on as many lines as ruff's formatter writes it.
+fn tuple(field: &str, items: &[String]) -> String {
+    const COLUMNS: usize = 88;
+    let line = format!("({})", items.join(", "));
+    if format!("        {field}={line},").len() <= COLUMNS {
+        return line;
+    }
+    let lines: Vec<String> = items.iter().map(|item| format!("            {item},\n")).collect();
+    format!("(\n{}        )", lines.concat())
+}
+
 fn robot_types() -> String {
     let words = Drive::ALL.map(|drive| format!("\"{}\"", drive.word())).join(", ");
     let mut text = format!(
@@ -87,8 +110,8 @@ ROBOT_TYPES: dict[TypeName, RobotType] = {{
             r#"    "{}": RobotType(
         robot="{}",
         drive="{}",
-        wheels=({}),
-        pushes=({}),
+        wheels={},
+        pushes={},
         mecanum={},
         one_axle={},
         scrubs={},
@@ -98,8 +121,11 @@ ROBOT_TYPES: dict[TypeName, RobotType] = {{
             row.word,
             row.class,
             row.runtime_drive,
-            places.clone().map(|place| format!("\"{}\"", place.identifier)).collect::<Vec<_>>().join(", "),
-            places.map(|place| format!("{:?}", place.push)).collect::<Vec<_>>().join(", "),
+            tuple(
+                "wheels",
+                &places.clone().map(|place| format!("\"{}\"", place.identifier)).collect::<Vec<_>>()
+            ),
+            tuple("pushes", &places.map(|place| format!("{:?}", place.push)).collect::<Vec<_>>()),
             python(row.mecanum),
             python(!row.has_wheelbase()),
             python(row.scrubs()),

@@ -57,7 +57,7 @@ fn push(text: &str, tokens: &mut Vec<Token>, token: TokenKind, span: Span) {
 /// Returns whether a number right after the token is meant as a part of a name, as no number follows it. (`move-4` is a
 /// move.)
 fn may_begin_name(token: TokenKind) -> bool {
-    let before_number = matches!(token, TokenKind::Wait | TokenKind::Repeat | TokenKind::Within);
+    let before_number = token == TokenKind::Within || token.only_before().has(TokenKind::Integer);
     token.is_name() && !before_number || token.entity_kind().is_some()
 }
 

@@ -4,261 +4,167 @@ use logos::Logos;
 use pydslrep_robots::Drive;
 use pydslrep_text::{closest, is_similar};
 
-/// A token without its text; the text is found by the span beside it.
-#[derive(Logos, Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-#[logos(skip r"[ \t\r\n\f]+")]
-#[repr(u8)]
-pub enum TokenKind {
-    /// A name, also one escaped by `^`.
-    #[regex(r"\^?[A-Za-z_][A-Za-z0-9_]*")]
-    Name,
-    /// Text that someone took for a name: `left-wheel`, `räder`, `rover.left`. It is allowed where a name is, and is
-    /// one mistake instead of a row of them.
-    #[regex(r"\^?[\p{L}_][\p{L}\p{M}\p{N}_]*([-.'’][\p{L}_][\p{L}\p{M}\p{N}_]*)*", priority = 1)]
-    MalformedName,
-    /// Digits, perhaps with `-` before them.
-    #[regex(r"-?[0-9]+", priority = 8)]
-    Integer,
-    /// Digits on both sides of one point.
-    #[regex(r"-?[0-9]+\.[0-9]+", priority = 8)]
-    Float,
-    /// Four integers joined by points.
-    #[regex(r"[0-9]+\.[0-9]+\.[0-9]+\.[0-9]+", priority = 8)]
-    Ipv4,
-    /// Digits and points that are no number: `4.`, `.5`, `1.2.3`.
-    #[regex(r"-?\.*[0-9][0-9.]*", priority = 4)]
-    MalformedNumber,
-    /// `"…"` on one line.
-    #[regex(r#""[^"\r\n]*""#)]
-    String,
-    /// `"` without its end on the line.
-    #[regex(r#""[^"\r\n]*"#)]
-    UnterminatedString,
-    /// `// …` up to the end of the line.
-    #[regex(r"//[^\r\n]*", allow_greedy = true)]
-    LineComment,
-    /// `/* … */`.
-    #[regex(r"/\*([^*]|\*+[^*/])*\*+/")]
-    BlockComment,
-    /// `/*` without `*/`; it takes the rest of the text, so that cutting never has to look ahead for its end.
-    #[regex(r"/\*([^*]|\*+[^*/])*\**")]
-    UnterminatedComment,
-    /// A comment as other languages write it, up to the end of the line: whatever it says is no part of the program.
-    #[regex(r"(#|<!--|(--|%|/|\\\\)[ \t])[^\r\n]*", allow_greedy = true)]
-    ForeignComment,
-    /// `{`
-    #[token("{")]
-    OpenBrace,
-    /// `}`
-    #[token("}")]
-    CloseBrace,
-    /// `,`
-    #[token(",")]
-    Comma,
-    /// `:`
-    #[token(":")]
-    Colon,
-    /// `wheel`
-    #[token("wheel")]
-    Wheel,
-    /// `wheelH`
-    #[token("wheelH")]
-    WheelH,
-    /// `with`
-    #[token("with")]
-    With,
-    /// `radius`
-    #[token("radius")]
-    Radius,
-    /// `sensor`
-    #[token("sensor")]
-    Sensor,
-    /// `ip`
-    #[token("ip")]
-    Ip,
-    /// `robot`
-    #[token("robot")]
-    Robot,
-    /// `type`
-    #[token("type")]
-    Type,
-    /// `tw`
-    #[token("tw")]
-    Tw,
-    /// `fw`
-    #[token("fw")]
-    Fw,
-    /// `fwh`
-    #[token("fwh")]
-    Fwh,
-    /// `port`
-    #[token("port")]
-    Port,
-    /// `has`
-    #[token("has")]
-    Has,
-    /// `wheels`
-    #[token("wheels")]
-    Wheels,
-    /// `sensors`
-    #[token("sensors")]
-    Sensors,
-    /// `parallel`
-    #[token("parallel")]
-    Parallel,
-    /// `movement`
-    #[token("movement")]
-    Movement,
-    /// `of`
-    #[token("of")]
-    Of,
-    /// `move`
-    #[token("move")]
-    Move,
-    /// `meters`
-    #[token("meters")]
-    Meters,
-    /// `centimeters`
-    #[token("centimeters")]
-    Centimeters,
-    /// `at`
-    #[token("at")]
-    At,
-    /// `turn`
-    #[token("turn")]
-    Turn,
-    /// `left`
-    #[token("left")]
-    Left,
-    /// `right`
-    #[token("right")]
-    Right,
-    /// `until`
-    #[token("until")]
-    Until,
-    /// `slam`
-    #[token("slam")]
-    Slam,
-    /// `environment`
-    #[token("environment")]
-    Environment,
-    /// `robots`
-    #[token("robots")]
-    Robots,
-    /// `moves`
-    #[token("moves")]
-    Moves,
-    /// `distance`, a word only after a sensor's `:`.
-    #[token("distance")]
-    Distance,
-    /// `bumper`, a word only after a sensor's `:`.
-    #[token("bumper")]
-    Bumper,
-    /// `import`, a word only at the start of an import.
-    #[token("import")]
-    Import,
-    /// `wait`, a word only where an action can begin.
-    #[token("wait")]
-    Wait,
-    /// `seconds`, a word only after the number of a `wait`.
-    #[token("seconds")]
-    Seconds,
-    /// `repeat`, a word only where an action can begin.
-    #[token("repeat")]
-    Repeat,
-    /// `times`, a word only after the number of a `repeat`.
-    #[token("times")]
-    Times,
-    /// `if`, a word only where an action can begin.
-    #[token("if")]
-    If,
-    /// `else`, a word only after the block of an `if`.
-    #[token("else")]
-    Else,
-    /// `do`, a word only where an action can begin.
-    #[token("do")]
-    Do,
-    /// `in`, a word only before `reverse`.
-    #[token("in")]
-    In,
-    /// `reverse`, a word only after `in`.
-    #[token("reverse")]
-    Reverse,
-    /// `clear`, a word only after the sensors of a condition.
-    #[token("clear")]
-    Clear,
-    /// `detect`, a word only after the sensors of a condition.
-    #[token("detect")]
-    Detect,
-    /// `within`, a word only in a condition.
-    #[token("within")]
-    Within,
-    /// Characters no token starts with; adjacent ones are one token.
-    Invalid,
-    /// Never in a text: fits nowhere, so that the parser says what would. See [`crate::expected_after`].
-    Cursor,
+/// Writes [`TokenKind`] with the keywords, and the lists of them: a keyword is one line.
+macro_rules! keywords {
+    (
+        reserved { $($reserved:ident $reserved_word:tt,)* }
+        contextual { $($(#[$doc:meta])* $contextual:ident $contextual_word:tt,)* }
+    ) => {
+        /// A token without its text; the text is found by the span beside it.
+        #[derive(Logos, Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        #[logos(skip r"[ \t\r\n\f]+")]
+        #[repr(u8)]
+        pub enum TokenKind {
+            /// A name, also one escaped by `^`.
+            #[regex(r"\^?[A-Za-z_][A-Za-z0-9_]*")]
+            Name,
+            /// Text that someone took for a name: `left-wheel`, `räder`, `rover.left`. It is allowed where a name is, and is
+            /// one mistake instead of a row of them.
+            #[regex(r"\^?[\p{L}_][\p{L}\p{M}\p{N}_]*([-.'’][\p{L}_][\p{L}\p{M}\p{N}_]*)*", priority = 1)]
+            MalformedName,
+            /// Digits, perhaps with `-` before them.
+            #[regex(r"-?[0-9]+", priority = 8)]
+            Integer,
+            /// Digits on both sides of one point.
+            #[regex(r"-?[0-9]+\.[0-9]+", priority = 8)]
+            Float,
+            /// Four integers joined by points.
+            #[regex(r"[0-9]+\.[0-9]+\.[0-9]+\.[0-9]+", priority = 8)]
+            Ipv4,
+            /// Digits and points that are no number: `4.`, `.5`, `1.2.3`.
+            #[regex(r"-?\.*[0-9][0-9.]*", priority = 4)]
+            MalformedNumber,
+            /// `"…"` on one line.
+            #[regex(r#""[^"\r\n]*""#)]
+            String,
+            /// `"` without its end on the line.
+            #[regex(r#""[^"\r\n]*"#)]
+            UnterminatedString,
+            /// `// …` up to the end of the line.
+            #[regex(r"//[^\r\n]*", allow_greedy = true)]
+            LineComment,
+            /// `/* … */`.
+            #[regex(r"/\*([^*]|\*+[^*/])*\*+/")]
+            BlockComment,
+            /// `/*` without `*/`; it takes the rest of the text, so that cutting never has to look ahead for its end.
+            #[regex(r"/\*([^*]|\*+[^*/])*\**")]
+            UnterminatedComment,
+            /// A comment as other languages write it, up to the end of the line: whatever it says is no part of the program.
+            #[regex(r"(#|<!--|(--|%|/|\\\\)[ \t])[^\r\n]*", allow_greedy = true)]
+            ForeignComment,
+            /// `{`
+            #[token("{")]
+            OpenBrace,
+            /// `}`
+            #[token("}")]
+            CloseBrace,
+            /// `,`
+            #[token(",")]
+            Comma,
+            /// `:`
+            #[token(":")]
+            Colon,
+            $(
+                #[doc = concat!("`", $reserved_word, "`")]
+                #[token($reserved_word)]
+                $reserved,
+            )*
+            $(
+                #[doc = concat!("`", $contextual_word, "`")]
+                ///
+                $(#[$doc])*
+                #[token($contextual_word)]
+                $contextual,
+            )*
+            /// Characters no token starts with; adjacent ones are one token.
+            Invalid,
+            /// Never in a text: fits nowhere, so that the parser says what would. See [`crate::expected_after`].
+            Cursor,
+        }
+
+        /// Every word with a meaning of its own, in the order of the language's contract; those of
+        /// [`TokenKind::CONTEXTUAL`] stay usable as names.
+        pub const KEYWORDS: [(TokenKind, &str); [$($reserved_word,)* $($contextual_word,)*].len()] = [
+            $((TokenKind::$reserved, $reserved_word),)*
+            $((TokenKind::$contextual, $contextual_word),)*
+        ];
+
+        /// The keywords that cannot be names unless escaped by `^`.
+        const RESERVED: TokenSet = TokenSet::of(&[$(TokenKind::$reserved,)*]);
+
+        impl TokenKind {
+            /// The keywords that are names wherever a name can be.
+            pub const CONTEXTUAL: [Self; [$($contextual_word,)*].len()] = [$(Self::$contextual,)*];
+        }
+    };
 }
 
-/// Every word with a meaning of its own, in the order of the language's contract; those of [`TokenKind::CONTEXTUAL`]
-/// stay usable as names.
-pub const KEYWORDS: [(TokenKind, &str); 45] = [
-    (TokenKind::Wheel, "wheel"),
-    (TokenKind::WheelH, "wheelH"),
-    (TokenKind::With, "with"),
-    (TokenKind::Radius, "radius"),
-    (TokenKind::Sensor, "sensor"),
-    (TokenKind::Ip, "ip"),
-    (TokenKind::Robot, "robot"),
-    (TokenKind::Type, "type"),
-    (TokenKind::Tw, "tw"),
-    (TokenKind::Fw, "fw"),
-    (TokenKind::Fwh, "fwh"),
-    (TokenKind::Port, "port"),
-    (TokenKind::Has, "has"),
-    (TokenKind::Wheels, "wheels"),
-    (TokenKind::Sensors, "sensors"),
-    (TokenKind::Parallel, "parallel"),
-    (TokenKind::Movement, "movement"),
-    (TokenKind::Of, "of"),
-    (TokenKind::Move, "move"),
-    (TokenKind::Meters, "meters"),
-    (TokenKind::Centimeters, "centimeters"),
-    (TokenKind::At, "at"),
-    (TokenKind::Turn, "turn"),
-    (TokenKind::Left, "left"),
-    (TokenKind::Right, "right"),
-    (TokenKind::Until, "until"),
-    (TokenKind::Slam, "slam"),
-    (TokenKind::Environment, "environment"),
-    (TokenKind::Robots, "robots"),
-    (TokenKind::Moves, "moves"),
-    (TokenKind::Distance, "distance"),
-    (TokenKind::Bumper, "bumper"),
-    (TokenKind::Import, "import"),
-    (TokenKind::Wait, "wait"),
-    (TokenKind::Seconds, "seconds"),
-    (TokenKind::Repeat, "repeat"),
-    (TokenKind::Times, "times"),
-    (TokenKind::If, "if"),
-    (TokenKind::Else, "else"),
-    (TokenKind::Do, "do"),
-    (TokenKind::In, "in"),
-    (TokenKind::Reverse, "reverse"),
-    (TokenKind::Clear, "clear"),
-    (TokenKind::Detect, "detect"),
-    (TokenKind::Within, "within"),
-];
-
-/// The keywords that cannot be names unless escaped by `^`.
-const RESERVED: TokenSet = {
-    let mut words = TokenSet(0);
-    let mut i = 0;
-    while i < KEYWORDS.len() {
-        words = words.or(TokenSet::of(&[KEYWORDS[i].0]));
-        i += 1;
+keywords! {
+    reserved {
+        Wheel "wheel",
+        WheelH "wheelH",
+        With "with",
+        Radius "radius",
+        Sensor "sensor",
+        Ip "ip",
+        Robot "robot",
+        Type "type",
+        Tw "tw",
+        Fw "fw",
+        Fwh "fwh",
+        Port "port",
+        Has "has",
+        Wheels "wheels",
+        Sensors "sensors",
+        Parallel "parallel",
+        Movement "movement",
+        Of "of",
+        Move "move",
+        Meters "meters",
+        Centimeters "centimeters",
+        At "at",
+        Turn "turn",
+        Left "left",
+        Right "right",
+        Until "until",
+        Slam "slam",
+        Environment "environment",
+        Robots "robots",
+        Moves "moves",
     }
-    words.without(TokenSet::of(&TokenKind::CONTEXTUAL))
-};
+    contextual {
+        /// A word only after a sensor's `:`.
+        Distance "distance",
+        /// A word only after a sensor's `:`.
+        Bumper "bumper",
+        /// A word only at the start of an import.
+        Import "import",
+        /// A word only where an action can begin.
+        Wait "wait",
+        /// A word only after the number of a `wait`.
+        Seconds "seconds",
+        /// A word only where an action can begin.
+        Repeat "repeat",
+        /// A word only after the number of a `repeat`.
+        Times "times",
+        /// A word only where an action can begin.
+        If "if",
+        /// A word only after the block of an `if`.
+        Else "else",
+        /// A word only where an action can begin.
+        Do "do",
+        /// A word only before `reverse`.
+        In "in",
+        /// A word only after `in`.
+        Reverse "reverse",
+        /// A word only after the sensors of a condition.
+        Clear "clear",
+        /// A word only after the sensors of a condition.
+        Detect "detect",
+        /// A word only in a condition.
+        Within "within",
+    }
+}
 
 /// A name as a program has to write it: keywords need their `^`. So does `import`, although it can do without in
 /// most places: after `} wheel` it would be taken for the next entity.
@@ -268,29 +174,65 @@ pub fn escape(name: &str) -> String {
     if escaped { format!("^{name}") } else { name.to_owned() }
 }
 
+/// A keyword that begins an action.
+struct Action {
+    keyword: TokenKind,
+    /// See [`TokenKind::only_before`].
+    only_before: TokenSet,
+    /// See [`TokenKind::examples`].
+    examples: &'static [&'static str],
+}
+
+const AMOUNT: TokenSet = TokenKind::NUMBERS.or(TokenSet::of(&[TokenKind::Until]));
+
+/// A row for each action, in the order in which messages list them.
+const ACTIONS: &[Action] = &[
+    Action {
+        keyword: TokenKind::Move,
+        only_before: NOTHING,
+        examples: &["move 4.0 meters", "move 40 centimeters at 9.0"],
+    },
+    Action {
+        keyword: TokenKind::Turn,
+        only_before: NOTHING,
+        examples: &["turn left 90", "turn right until { SENSORS }"],
+    },
+    Action {
+        keyword: TokenKind::Wait,
+        only_before: AMOUNT,
+        examples: &["wait 2 seconds", "wait until { SENSORS } clear"],
+    },
+    Action {
+        keyword: TokenKind::Repeat,
+        only_before: AMOUNT,
+        examples: &["repeat 4 times { ACTIONS }", "repeat until { SENSORS } detect { ACTIONS }"],
+    },
+    Action {
+        keyword: TokenKind::If,
+        only_before: TokenSet::of(&[TokenKind::OpenBrace]),
+        examples: &["if { SENSORS } detect { ACTIONS }"],
+    },
+    Action { keyword: TokenKind::Do, only_before: NOTHING, examples: &["do MOVEMENT"] },
+    Action { keyword: TokenKind::Slam, only_before: NOTHING, examples: &["slam"] },
+];
+
+const NOTHING: TokenSet = TokenSet(0);
+
 impl TokenKind {
     /// The keywords that begin an action.
-    pub const ACTIONS: [Self; 7] =
-        [Self::Move, Self::Turn, Self::Wait, Self::Repeat, Self::If, Self::Do, Self::Slam];
+    pub const ACTIONS: [Self; ACTIONS.len()] = {
+        let mut words = [Self::Cursor; ACTIONS.len()];
+        let mut i = 0;
+        while i < words.len() {
+            words[i] = ACTIONS[i].keyword;
+            i += 1;
+        }
+        words
+    };
 
-    /// The keywords that are names wherever a name can be.
-    pub const CONTEXTUAL: [Self; 15] = [
-        Self::Distance,
-        Self::Bumper,
-        Self::Import,
-        Self::Wait,
-        Self::Seconds,
-        Self::Repeat,
-        Self::Times,
-        Self::If,
-        Self::Else,
-        Self::Do,
-        Self::In,
-        Self::Reverse,
-        Self::Clear,
-        Self::Detect,
-        Self::Within,
-    ];
+    /// The tokens that are written where a number belongs.
+    pub(crate) const NUMBERS: TokenSet =
+        TokenSet::of(&[Self::Integer, Self::Float, Self::Ipv4, Self::MalformedNumber]);
 
     /// The tokens that can be where a name is expected.
     pub(crate) const NAMES: TokenSet =
@@ -325,16 +267,17 @@ impl TokenKind {
 
     /// Returns examples of the statement that an action's keyword begins; none for other tokens.
     pub fn examples(self) -> &'static [&'static str] {
-        match self {
-            Self::Move => &["move 4.0 meters", "move 40 centimeters at 9.0"],
-            Self::Turn => &["turn left 90", "turn right until { SENSORS }"],
-            Self::Wait => &["wait 2 seconds", "wait until { SENSORS } clear"],
-            Self::Repeat => &["repeat 4 times { ACTIONS }", "repeat until { SENSORS } detect { ACTIONS }"],
-            Self::If => &["if { SENSORS } detect { ACTIONS }"],
-            Self::Do => &["do MOVEMENT"],
-            Self::Slam => &["slam"],
-            _ => &[],
-        }
+        self.action().map_or(&[], |action| action.examples)
+    }
+
+    /// What follows the keyword of an action and never a name: before it, a keyword that can be a name is none. Nothing for
+    /// those that are never names, and for `do`, which a name follows.
+    pub fn only_before(self) -> TokenSet {
+        self.action().map_or_else(TokenSet::default, |action| action.only_before)
+    }
+
+    fn action(self) -> Option<&'static Action> {
+        ACTIONS.iter().find(|action| action.keyword == self)
     }
 
     /// Returns whether it begins an action.
@@ -394,7 +337,7 @@ impl TokenKind {
 
     /// Returns whether it is written where a number belongs.
     pub fn is_number(self) -> bool {
-        matches!(self, Self::Integer | Self::Float | Self::Ipv4 | Self::MalformedNumber)
+        Self::NUMBERS.has(self)
     }
 
     /// The kind of entity this keyword begins.

@@ -138,6 +138,11 @@ fn kakoune_has_the_keywords() {
     let lines =
         format!(r"add-highlighter shared/pydslrep/code/ regex '(?<![\w^])({reserved})(?!\w)' 0:keyword");
     check("editors/kakoune/pydslrep.kak", "The keywords", &lines);
+    let actions = words(|kind| kind.only_before().has(TokenKind::Integer)).join("|");
+    let lines = format!(
+        r"add-highlighter shared/pydslrep/code/ regex '(?<!ip\s)(?<![\w^])({actions})\s+(?:-?\d+(?:\.\d+)?(?![.\d])|until(?!\w))' 1:keyword"
+    );
+    check("editors/kakoune/pydslrep.kak", "The actions before a number", &lines);
 }
 
 #[test]
@@ -150,4 +155,10 @@ fn neovim_has_the_keywords() {
     let others: Vec<String> = others.into_iter().map(str::to_owned).collect();
     let indent = "syn keyword pydslrepKeyword ";
     check("editors/neovim/syntax/pydslrep.vim", "The other keywords", &wrapped(&others, indent));
+    // Those outside of movements are written there with what is around them, and so is `do` with its name.
+    let elsewhere = [TokenKind::Distance, TokenKind::Bumper, TokenKind::Import, TokenKind::Do];
+    let contextual = words(|kind| !kind.is_keyword() && !elsewhere.contains(&kind));
+    let contextual: Vec<String> = contextual.into_iter().map(str::to_owned).collect();
+    let lines = wrapped(&contextual, "syn keyword pydslrepWord contained ");
+    check("editors/neovim/syntax/pydslrep.vim", "The contextual keywords", &lines);
 }

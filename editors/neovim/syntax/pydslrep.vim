@@ -29,8 +29,9 @@ syn match pydslrepMovement /\^\=\<\h\w*/ contained
 syn match pydslrepEnvironment /\^\=\<\h\w*/ contained
 syn match pydslrepName /\^\h\w*/
 
-" Contextual keywords; those of actions are names in lists and after `do`.
+" The contextual keywords, which crates/syntax/tests/keywords.rs writes; they are names in lists and after `do`.
 syn keyword pydslrepWord contained wait seconds repeat times if else in reverse clear detect within
+" End of the contextual keywords.
 syn keyword pydslrepWord contained do nextgroup=pydslrepMovement skipwhite skipempty
 syn match pydslrepSensorKind /:\_s*\%(distance\|bumper\)\>/ contained contains=pydslrepKind
 syn keyword pydslrepKind contained distance bumper

@@ -75,9 +75,9 @@ fn action<'s>(block: &Rule<'s, Block>) -> Actions<'s> {
     ));
     let known = spanned(kinds).labelled(Expected::Action);
     let misspelt = spanned(choice((
-        misspelt_before(TokenKind::Wait, NUMBER.or(UNTIL)).ignore_then(waits),
-        misspelt_before(TokenKind::Repeat, NUMBER.or(UNTIL)).ignore_then(repeats),
-        ifs(misspelt_before(TokenKind::If, OPEN)),
+        misspelt_action(TokenKind::Wait).ignore_then(waits),
+        misspelt_action(TokenKind::Repeat).ignore_then(repeats),
+        ifs(misspelt_action(TokenKind::If)),
     )));
     known
         .map(|action| vec![action])
@@ -91,6 +91,11 @@ fn spanned<'s>(
     kind: impl Parser<'s, Input<'s>, ActionKind, Extra<'s>> + Clone + 's,
 ) -> impl Parser<'s, Input<'s>, Action, Extra<'s>> + Clone {
     kind.map_with(|kind, extra| Action { kind, span: extra.span() })
+}
+
+/// A slip for the keyword of an action, right before what no name is before.
+fn misspelt_action<'s>(word: TokenKind) -> Rule<'s, ()> {
+    misspelt_before(word, word.only_before())
 }
 
 /// A slip for a keyword, right before one of `next`.

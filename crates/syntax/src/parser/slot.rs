@@ -300,12 +300,10 @@ pub(super) const NAME: TokenSet = TokenKind::NAMES;
 pub(super) const HARD_ACTIONS: TokenSet = TokenSet::of(&TokenKind::ACTIONS).without(NAME);
 
 /// The keywords that begin an action wherever one can begin, and are names elsewhere.
-const ACTION_WORDS: TokenSet =
-    TokenSet::of(&[TokenKind::Wait, TokenKind::Repeat, TokenKind::If, TokenKind::Do]);
+const ACTION_WORDS: TokenSet = TokenSet::of(&TokenKind::ACTIONS).and(NAME);
 
 /// The first tokens of a number.
-pub(super) const NUMBER: TokenSet =
-    TokenSet::of(&[TokenKind::Integer, TokenKind::Float, TokenKind::Ipv4, TokenKind::MalformedNumber]);
+pub(super) const NUMBER: TokenSet = TokenKind::NUMBERS;
 
 /// The name of a new entity; a keyword in its place is taken for a name where what follows it is in `next`.
 pub(super) fn declared_name<'s>(kind: EntityKind, next: TokenSet, later: TokenSet) -> Rule<'s, Option<Name>> {
@@ -337,10 +335,8 @@ pub(super) fn plain_name<'s>() -> impl Parser<'s, Input<'s>, Name, Extra<'s>> + 
 
 /// Before what is more than a name: the keyword of an action and what only that action has after it.
 pub(super) fn action_ahead<'s>() -> impl Parser<'s, Input<'s>, (), Extra<'s>> + Clone {
-    const UNTIL: TokenSet = TokenSet::of(&[TokenKind::Until]);
-    const OPEN: TokenSet = TokenSet::of(&[TokenKind::OpenBrace]);
-    let waits = one_in(TokenSet::of(&[TokenKind::Wait, TokenKind::Repeat])).then(one_in(NUMBER.or(UNTIL)));
-    choice((waits.ignored(), just(TokenKind::If).then(one_in(OPEN)).ignored()))
+    let belongs = |(word, next): &(TokenKind, TokenKind)| word.only_before().has(*next);
+    one_in(ACTION_WORDS).then(any()).filter(belongs).ignored()
 }
 
 fn keyword_for_name<'s>(
