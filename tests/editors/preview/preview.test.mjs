@@ -659,6 +659,7 @@ test("after an edit, the result of a run is not shown as one of the present prog
   await server.leaveLine(uri);
   await panel.until("state", "stale");
   assert.match(await result.innerText(), /The program has changed since\./);
+  await panel.part("banner").waitFor();
   await panel.page.screenshot({ path: path.join(OUT, "earlier-stale.png") });
   await change("move 2 parsecs", before);
   await result.getByText("The program has changed since.").waitFor({ state: "detached" });
