@@ -194,7 +194,6 @@ test("after an edit, the result is marked as one of the program before", async (
   const frame = await stage.webview("main.preview");
   const since = frame.locator('[data-part="result"]', { hasText: "The program has changed since." });
   assert.equal(await since.count(), 0);
-  await stage.openFile("yard.pyr");
   await stage.line("turn left").first().click();
   await stage.page.keyboard.press("End");
   await stage.type(" 45");
@@ -206,7 +205,8 @@ test("after an edit, the result is marked as one of the program before", async (
   await stage.acceptFile("yard.svg");
   await stage.toast("Path exported: yard.svg");
   assert.doesNotMatch(stage.read("yard.svg"), /driven/);
-  await stage.openFile("yard.pyr");
+  await stage.line("turn left 45").first().click();
+  await stage.page.keyboard.press("End");
   for (let key = 0; key < 3; key += 1) await stage.page.keyboard.press("Backspace");
   await since.waitFor({ state: "detached" });
 });
