@@ -355,6 +355,8 @@ def test_driven_paths_and_their_changes_are_sent(
     raw = endless.raw
     raw.send(request(1, "pydslrep/drivenPath", endless.area))
     assert raw.answer(1)["result"] is None, "nothing was driven yet"
+    raw.send(request(6, "pydslrep/plannedPath", endless.area))
+    planned = raw.answer(6)["result"]
 
     endless.execute(2, "pydslrep.run", endless.area)
     endless.accept_progress()
@@ -362,7 +364,9 @@ def test_driven_paths_and_their_changes_are_sent(
     assert changed["params"] == endless.area
     assert "picture" in raw.answer(2)["result"]
     raw.send(request(3, "pydslrep/drivenPath", endless.area))
-    [rover] = raw.answer(3)["result"]["robots"]
+    driven = raw.answer(3)["result"]
+    assert driven["planned"] == planned, "as it was when the run began"
+    [rover] = driven["robots"]
     assert rover["name"] == "rover"
     assert [pose["x"] for pose in rover["poses"]] == [0, 0.125, 0.25]
     assert rover["map"] == {"nodes": [[0, 1], [2, 3]], "edges": [[[0, 1], [2, 3]]]}

@@ -75,6 +75,7 @@ const preview = new Preview(byId("preview"), connection, {
     editors.setEnvironment(id?.environment, preview.environments);
     runs.setEnvironment(id);
   },
+  changed: () => runs.pathChanged(),
 });
 
 const runs = new RunPanel({ connection, editors, preview, imported: importedFiles });

@@ -22,6 +22,8 @@ export interface PreviewEvents {
   fix: (location: Location, title: string) => void;
   /** Another environment is shown. */
   shown: (environment: EnvironmentId | undefined) => void;
+  /** There is another path, or none because of a problem. */
+  changed: () => void;
 }
 
 export class Preview {
@@ -72,6 +74,11 @@ export class Preview {
     await this.host.follower.update(position, !isNew);
   }
 
+  /** Whether the program has changed since the latest run of an environment, if that is shown. */
+  hasChangedSinceRun(id: EnvironmentId): boolean {
+    return this.shown !== undefined && keyOf(this.shown) === keyOf(id) && this.host.hasChangedSinceRun;
+  }
+
   /** Shows the path of a run; it may go on. */
   async setDriven(id: EnvironmentId, driven: DrivenPath | undefined): Promise<void> {
     if (driven) this.driven.set(keyOf(id), driven);
@@ -91,6 +98,7 @@ export class Preview {
     this.frame.contentWindow?.postMessage(message, location.origin);
     if (message.type === "environments") this.environments = message.names;
     if (message.type === "environments" || message.type === "problem") this.events.shown(this.shown);
+    if (message.type === "path" || message.type === "problem") this.events.changed();
   }
 
   /** Offers the picture as PNG. */

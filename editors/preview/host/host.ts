@@ -1,7 +1,8 @@
 // What every host of the page does, whichever editor it is: answers the page's messages and passes on those of the server.
 import { Follower, type Request } from "./follower";
+import { LatestRun } from "./latest_run";
 import { fromPage, type Result, type Suggestion, type ToPage } from "./messages";
-import { DRIVEN_PATH_CHANGED, type EnvironmentId, type Location, type NumberedAction, PLANNED_PATH_CHANGED } from "./protocol";
+import { DRIVEN_PATH_CHANGED, type EnvironmentId, keyOf, type Location, type NumberedAction, PLANNED_PATH_CHANGED } from "./protocol";
 
 /** What a host does in its own way. */
 export interface Actions {
@@ -25,6 +26,8 @@ export interface Button {
 export class PreviewHost {
   readonly follower: Follower;
   private buttons: readonly Button[] = [];
+  private readonly run = new LatestRun();
+  /** The result that the page shows. */
   private result: Result | null = null;
   /** Resolves the pending capture. */
   private captured: ((png: string) => void) | undefined;
@@ -85,23 +88,45 @@ export class PreviewHost {
     }
   }
 
-  /** Shows how a run ended, until the next one starts. */
-  setResult(message: string, isError: boolean, buttons: readonly Button[]): void {
+  /** Shows how a run of an environment ended, until the next one starts. */
+  setResult(environment: EnvironmentId, message: string, isError: boolean, buttons: readonly Button[]): void {
     this.buttons = buttons;
-    this.result = { message, isError, buttons: buttons.map(({ label }) => label) };
-    this.post({ type: "result", result: this.result });
+    this.run.end(keyOf(environment), { message, isError, buttons: buttons.map(({ label }) => label) });
+    this.showResult();
   }
 
-  clearResult(): void {
+  /** A run of an environment starts. */
+  clearResult(environment: EnvironmentId): void {
     this.buttons = [];
-    this.result = null;
-    this.post({ type: "result", result: null });
+    this.run.begin(keyOf(environment));
+    this.showResult();
+  }
+
+  /** Whether the latest run of the shown environment was one of another plan than that in the picture. */
+  get isRunEarlier(): boolean {
+    return this.run.isDrivenEarlier;
+  }
+
+  /** Whether the program has changed since the latest run of the shown environment. */
+  get hasChangedSinceRun(): boolean {
+    return this.run.hasChanged;
   }
 
   private show(message: ToPage): void {
+    const { shown } = this.follower;
+    this.run.follow(message, shown && keyOf(shown));
     if (message.type === "environments" && this.actions.run) this.post({ ...message, canRun: true });
     else if (message.type === "problem" && !this.actions.fix) this.post(withoutFix(message));
+    else if (message.type === "path" || message.type === "driven") this.post({ ...message, isRunEarlier: this.isRunEarlier });
     else this.post(message);
+    this.showResult();
+  }
+
+  private showResult(): void {
+    const { result } = this.run;
+    if (JSON.stringify(result) === JSON.stringify(this.result)) return;
+    this.result = result;
+    this.post({ type: "result", result });
   }
 
   /** The page's picture as a data URI. */

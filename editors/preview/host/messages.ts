@@ -3,15 +3,15 @@ import type { ActionAt, DrivenPath, NumberedAction, PlannedPath } from "./protoc
 
 /** To the page. */
 export type ToPage =
-  | { type: "path"; uri: string; path: PlannedPath }
+  | { type: "path"; uri: string; path: PlannedPath; isRunEarlier?: boolean }
   /** The program has no path now, and why. The page keeps its last path. */
   | { type: "problem"; uri: string | null; message: string; suggestion?: Suggestion; place?: string; fix?: string }
-  /** How the latest run ended; null when another one starts. */
+  /** How the latest run ended; null when another one starts, or another environment is shown. */
   | { type: "result"; result: Result | null }
   | { type: "environments"; uri: string; names: string[]; shown: string | null; canRun?: boolean }
   | { type: "cursor"; action: ActionAt | null }
-  /** The latest run, if there was one, and whether it has just ended. */
-  | { type: "driven"; uri: string; environment: string; driven: DrivenPath | null; isNew: boolean }
+  /** The latest run, if there was one, whether it has just ended, and whether its program was an earlier version. */
+  | { type: "driven"; uri: string; environment: string; driven: DrivenPath | null; isNew: boolean; isRunEarlier?: boolean }
   /** Requests the picture as PNG. */
   | { type: "capture" };
 
@@ -21,6 +21,8 @@ export interface Result {
   isError: boolean;
   /** Labels of buttons, in order. */
   buttons: string[];
+  /** Whether the program has changed since. */
+  isEarlier?: boolean;
 }
 
 /** What the user can do about a problem. */

@@ -179,6 +179,8 @@ export interface ErrorData {
 export interface DrivenPath {
   environment: string;
   robots: DrivenRobot[];
+  /** What was planned when the run began. */
+  planned: PlannedPath | null;
 }
 
 export interface DrivenRobot {

@@ -15,6 +15,8 @@ export interface LegendContent {
   /** The latest run, even if it is hidden. */
   driven: Driven | undefined;
   isRunShown: boolean;
+  /** Whether that was one of an earlier version of the program, whose planned path was another one. */
+  isRunEarlier: boolean;
   hidden: ReadonlySet<string>;
 }
 
@@ -32,14 +34,14 @@ export class Legend {
     const robots = model.robots.map((robot) => this.entry(robot, content));
     const parts: HTMLElement[] = [element("ul", { class: "robots", "aria-label": "Robots" }, ...robots)];
     // A run that failed at once has nothing to show.
-    if (driven && hasPath(driven)) parts.push(this.run(content.isRunShown));
+    if (driven && hasPath(driven)) parts.push(this.run(content));
     if (model.collisions.length > 0) parts.push(this.collisions(model.collisions));
     parts.push(key(content));
     this.panel.replaceChildren(...parts);
     if (focused) this.panel.querySelector<HTMLElement>(`[data-key="${CSS.escape(focused)}"]`)?.focus();
   }
 
-  private entry(robot: Robot, { driven, isRunShown, hidden }: LegendContent): HTMLElement {
+  private entry(robot: Robot, { driven, isRunShown, isRunEarlier, hidden }: LegendContent): HTMLElement {
     const check = element("input", { type: "checkbox", "data-key": `robot ${robot.name}`, "data-robot": robot.name });
     check.checked = !hidden.has(robot.name);
     check.addEventListener("change", () => this.events.hide(robot.name, !check.checked));
@@ -47,7 +49,7 @@ export class Legend {
     const name = element("span", { class: "name", title: robot.name }, robot.name);
     const drivenEnd = isRunShown ? driven?.robots.get(robot.name)?.end : undefined;
     const lines = [robot.unknownAfter ? `planned up to “${robot.unknownAfter.text}”; the rest is unknown until it runs` : `→ ${format.pose(robot.end)}`];
-    if (drivenEnd && robot.unknownAfter) lines.push(`driven → ${format.pose(drivenEnd)}`);
+    if (drivenEnd && (robot.unknownAfter || isRunEarlier)) lines.push(`driven → ${format.pose(drivenEnd)}`);
     else if (drivenEnd) {
       const { distance, angle } = deviation(robot.end, drivenEnd);
       lines.push(`driven path ends ${format.smallDistance(distance)}, ${format.fixed((angle * 180) / Math.PI, 1)}° off`);
@@ -56,11 +58,11 @@ export class Legend {
     return element("li", {}, element("label", {}, check, swatch, name), ...notes);
   }
 
-  private run(isShown: boolean): HTMLElement {
+  private run({ isRunShown, isRunEarlier }: LegendContent): HTMLElement {
     const check = element("input", { type: "checkbox", "data-key": "run", "data-part": "show-run" });
-    check.checked = isShown;
+    check.checked = isRunShown;
     check.addEventListener("change", () => this.events.showRun(check.checked));
-    return element("label", { class: "run" }, check, "Latest run");
+    return element("label", { class: "run" }, check, isRunEarlier ? "Latest run, before the program changed" : "Latest run");
   }
 
   private collisions(collisions: readonly Collision[]): HTMLElement {

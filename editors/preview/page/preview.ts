@@ -33,6 +33,8 @@ export class Preview {
   /** The key of the environment that `driven` is a run of. */
   private drivenKey: string | undefined;
   private isRunShown = true;
+  /** Whether `driven` is a run of an earlier version of the program. */
+  private isRunEarlier = false;
   private readonly hidden: Set<string>;
   private readonly highlights = new Highlights();
   private theme: Theme;
@@ -140,10 +142,11 @@ export class Preview {
 
   // Messages
 
-  private showPath({ uri, path }: Extract<ToPage, { type: "path" }>): void {
+  private showPath({ uri, path, isRunEarlier = false }: Extract<ToPage, { type: "path" }>): void {
     const isOther = this.model?.environment !== path.environment || this.pathUri !== uri;
     this.model = modelOf(path);
     this.pathUri = uri;
+    this.isRunEarlier = isRunEarlier;
     this.highlights.clear();
     this.tooltip.hide();
     if (isOther) {
@@ -183,7 +186,8 @@ export class Preview {
     this.update(true);
   }
 
-  private showDriven({ driven, isNew, ...id }: Extract<ToPage, { type: "driven" }>): void {
+  private showDriven({ driven, isNew, isRunEarlier = false, ...id }: Extract<ToPage, { type: "driven" }>): void {
+    this.isRunEarlier = isRunEarlier;
     this.driven = driven ? drivenOf(driven) : undefined;
     this.drivenKey = keyOf(id);
     if (isNew && this.playback.isPlaying) this.playback.reset();
@@ -366,7 +370,7 @@ export class Preview {
   }
 
   private get legendContent(): LegendContent {
-    return { model: this.model, driven: this.driven, isRunShown: this.isRunShown, hidden: this.hidden };
+    return { model: this.model, driven: this.driven, isRunShown: this.isRunShown, isRunEarlier: this.isRunEarlier, hidden: this.hidden };
   }
 
   private hitAt(px: number, py: number): Hit | undefined {

@@ -84,8 +84,10 @@ export class Toolbar {
     this.result.hidden = result === null;
     if (!result) return;
     this.result.classList.toggle("error", result.isError);
+    this.result.classList.toggle("earlier", result.isEarlier === true);
     const buttons = result.buttons.flatMap((label, index) => [" ", textButton(label, `result-${index}`, () => this.events.press(index), "link")]);
-    this.result.replaceChildren(...withCode(withFullStop(result.message)), ...buttons);
+    const since = result.isEarlier ? [" ", element("strong", {}, "The program has changed since.")] : [];
+    this.result.replaceChildren(...withCode(withFullStop(result.message)), ...since, ...buttons);
   }
 
   hideProblem(): void {

@@ -96,7 +96,7 @@ test("the bounds include robots, obstacles and driven paths", () => {
   const { left, bottom, right, top } = boundsOf(model, undefined);
   assert.deepEqual([left, bottom, right, top], [-1, -2, 4.5, 1.5]);
   const poses = [{ t: 0, x: -7, y: 0, theta: 0 }];
-  const driven = drivenOf({ environment: "yard", robots: [{ name: "rover", poses, map: { nodes: [], edges: [] } }] });
+  const driven = drivenOf({ environment: "yard", robots: [{ name: "rover", poses, map: { nodes: [], edges: [] } }], planned: null });
   assert.equal(boundsOf(model, driven).left, -7.25);
   const empty = modelOf({ ...plan(), robots: [], obstacles: [] });
   assert.deepEqual(boundsOf(empty, undefined), { left: -1, bottom: -1, right: 1, top: 1 });

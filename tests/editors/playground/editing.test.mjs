@@ -160,6 +160,27 @@ inPage("hints show where each action ends, follow the text, and can be written i
   assert.match(await playground.text(), /turn left 90\b/);
 });
 
+inPage("the preview says what is wrong now, leads there and fixes it", async (playground) => {
+  await playground.write(PROGRAM);
+  await playground.pathShown("area");
+  const banner = playground.preview.locator('[data-part="banner"]');
+  for (const [before, after, word] of [["move 1 meters", "move 1 parsecs", "parsecs"], ["turn left", "trun left", "trun"]]) {
+    await playground.write(PROGRAM.replace(before, after));
+    // What is wrong in the line of the cursor may be settled by the next word.
+    await playground.place("wheel l");
+    await banner.getByText(word, { exact: true }).first().waitFor();
+  }
+  await banner.getByRole("button", { name: "line 6" }).click();
+  await playground.page.waitForFunction(() => {
+    const content = document.querySelector("#editor").shadowRoot.querySelector(".cm-editor:not([hidden]) .cm-content");
+    const { state } = content.cmTile.root.view;
+    return state.doc.lineAt(state.selection.main.from).number === 6;
+  });
+  await banner.locator('[data-part="fix"]').click();
+  await playground.becomes(PROGRAM);
+  await banner.waitFor({ state: "hidden" });
+});
+
 inPage("F8 goes to errors first, then to warnings, and Shift+F8 back", async (playground, page) => {
   const wrong = `wheel tall with radius 4500\n${PROGRAM.replace("turn left", "trun left").replace("move 1 meters", "move 1 parsecs")}`;
   await playground.write(wrong);

@@ -13,6 +13,7 @@ const OUT = path.join(import.meta.dirname, "out");
 const PICTURES = process.env.UPDATE_EXPECT ? path.join(ROOT, "docs", "images", "editors") : OUT;
 
 const { Follower } = await moduleOf("preview/host/follower.ts");
+const { PreviewHost } = await moduleOf("preview/host/host.ts");
 
 let browser;
 let server;
@@ -627,6 +628,46 @@ test("after a run the driven path is drawn with the planned one", async () => {
   await panel.part("show-run").uncheck();
   await panel.part("fit").click();
   assert.equal((await drawnPixels(panel))[0], before);
+  await panel.close();
+});
+
+test("after an edit, the result of a run is not shown as one of the present program", async () => {
+  const { uri, text } = example("square");
+  const yard = { uri, environment: "yard" };
+  const panel = await Panel.open(browser);
+  const host = new PreviewHost((method, params) => server.request(method, params), (message) => void panel.post(message), {});
+  current = host.follower;
+  await server.open(uri, text);
+  await host.follower.follow(uri, { line: 0, character: 0 });
+  await panel.until("state", "ready");
+  host.clearResult(yard);
+  await run(panel, uri, "yard");
+  host.setResult(yard, "yard: 40.0 s simulated in 0.5 s", false, [{ label: "Show Table", press: () => undefined }]);
+  const [result, legend] = [panel.part("result"), panel.part("legend")];
+  await result.waitFor();
+  assert.equal(await result.innerText(), "yard: 40.0 s simulated in 0.5 s. Show Table");
+  assert.match(await legend.innerText(), /driven path ends [^]*Latest run\n/);
+
+  const before = /move \d+ meters/.exec(text)[0];
+  const change = (from, to) => server.change(uri, rangeOf(text.replace(before, from), from), to);
+  await change(before, "move 2 meters");
+  await result.getByText("The program has changed since.").waitFor();
+  await panel.page.screenshot({ path: path.join(OUT, "earlier.png") });
+  assert.doesNotMatch(await legend.innerText(), /driven path ends/);
+  assert.match(await legend.innerText(), /driven → \([^]*Latest run, before the program changed/);
+  await change("move 2 meters", "move 2 parsecs");
+  await server.leaveLine(uri);
+  await panel.until("state", "stale");
+  assert.match(await result.innerText(), /The program has changed since\./);
+  await panel.part("banner").waitFor();
+  await panel.page.screenshot({ path: path.join(OUT, "earlier-stale.png") });
+  await change("move 2 parsecs", before);
+  await result.getByText("The program has changed since.").waitFor({ state: "detached" });
+  assert.match(await legend.innerText(), /driven path ends [^]*Latest run\n/);
+  // A run that failed at once has no path.
+  const driven = { environment: "yard", robots: [{ name: "scout", poses: [{ t: 0, x: 0, y: 0, theta: 0 }], map: { nodes: [], edges: [] } }], planned: null };
+  await panel.post({ type: "driven", ...yard, driven: { ...driven, robots: [] }, isNew: true });
+  await panel.part("show-run").waitFor({ state: "detached" });
   await panel.close();
 });
 

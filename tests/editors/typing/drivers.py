@@ -361,3 +361,5 @@ EDITORS: dict[str, Callable[[Session], Editor]] = {
     "kakoune": Kakoune,
     "playground": InPlayground,
 }
+# They step over an inserted brace only where it is the next character, not on the line below.
+LEAVE_SECOND_BRACES = ("helix",)

@@ -17,7 +17,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from corpus import FEW, Program, other_files, programs, ragged
-from drivers import EDITORS, Editor
+from drivers import EDITORS, LEAVE_SECOND_BRACES, Editor
 from keystrokes import Stroke, strokes
 from session import ROOT, open_session
 
@@ -100,6 +100,8 @@ def arguments() -> argparse.Namespace:
 def tasks(options: argparse.Namespace) -> Iterator[Task]:
     """The tasks that the options select."""
     for number, program in enumerate(programs()):
+        if program.is_printed and options.editor in LEAVE_SECOND_BRACES:
+            continue
         if options.programs:
             is_chosen = fnmatch(program.name, options.programs)
         else:

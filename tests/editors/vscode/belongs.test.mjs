@@ -61,6 +61,32 @@ test("a scene follows when its environment is renamed", async () => {
   assert.match(stage.read("hall.scene.toml"), /\[robots\.guard\]/);
 });
 
+test("a failed run says where, and marks its action until the next one", async () => {
+  // Quick Open may not know the new name yet.
+  const write = async (scene) => {
+    await stage.tab("hall.scene.toml").click();
+    await stage.line("[robots.guard]").first().click();
+    await stage.page.keyboard.press("Control+A");
+    await stage.page.keyboard.insertText(scene);
+    await stage.tab("yard.pyr").click();
+    await stage.line("move 50").first().click();
+  };
+  const scene = SCENE.replace("rover", "guard");
+  await write(`${scene}\n[[cylinder]]\nat = [0.4, 1]\nradius = 0.1\n`);
+  const marked = stage.page.locator(".squiggly-error");
+  assert.equal(await marked.count(), 0);
+  await stage.page.keyboard.press("F5");
+  const frame = await stage.webview("main.preview");
+  const result = frame.locator('[data-part="result"]');
+  await result.filter({ hasText: /^Robot guard, movement patrol, action 1: .*yard\.pyr, line 7/ }).waitFor();
+  await marked.first().waitFor();
+  await write(scene);
+  await result.filter({ hasText: "The program has changed since." }).waitFor();
+  await stage.page.keyboard.press("F5");
+  await result.filter({ hasText: /hall: .* simulated in/ }).waitFor();
+  await marked.first().waitFor({ state: "detached" });
+});
+
 async function rename(line, word, name) {
   await stage.line(line).first().waitFor();
   await stage.clickWord(line, word);

@@ -215,3 +215,13 @@ test("a new file is a program; generating its script asks to save it", async () 
 test("steps done before the walkthrough is first opened are ticked off", async () => {
   assert.deepEqual(await stage.walkthrough(), ["Write a program", "Preview the path", "Run it", "Export the script"]);
 });
+
+test("a button of the walkthrough asks for the program where none is visible", async () => {
+  await stage.call("View: Close All Editors");
+  await stage.walkthrough();
+  await stage.page.locator(".getting-started-step", { hasText: "Run it" }).first().click();
+  await stage.page.locator(".getting-started-step.expanded").getByRole("button", { name: "Run in Simulator" }).click();
+  const rows = stage.page.locator(".quick-input-widget .monaco-list-row");
+  await rows.filter({ hasText: "none.pyr" }).first().waitFor();
+  await stage.page.keyboard.press("Escape");
+});

@@ -28,6 +28,8 @@ test("the preview opens next to the program by its keys", async () => {
   frame = await stage.webview("main.preview");
   await until("a path is drawn", async () => (await drawCount()) > 0);
   assert.equal(await frame.locator("main.preview").getAttribute("data-state"), "ready");
+  const icon = stage.page.locator(".tab", { hasText: "Path: " }).locator(".monaco-icon-label-iconpath");
+  assert.match(await icon.getAttribute("style"), /file-(light|dark)\.svg/);
   await stage.picture("preview");
 });
 

@@ -190,6 +190,27 @@ test("the message opens the table of the run", async () => {
   await stage.picture("run");
 });
 
+test("after an edit, the result is marked as one of the program before", async () => {
+  const frame = await stage.webview("main.preview");
+  const since = frame.locator('[data-part="result"]', { hasText: "The program has changed since." });
+  assert.equal(await since.count(), 0);
+  await stage.line("turn left").first().click();
+  await stage.page.keyboard.press("End");
+  await stage.type(" 45");
+  await since.waitFor();
+  await frame.getByText("Latest run, before the program changed").waitFor();
+  // What the run drew is not exported as the path of this program.
+  await stage.call("PyDSLRep: Export Path…");
+  await stage.page.locator(".quick-input-widget .monaco-list-row", { hasText: "SVG" }).first().click();
+  await stage.acceptFile("yard.svg");
+  await stage.toast("Path exported: yard.svg");
+  assert.doesNotMatch(stage.read("yard.svg"), /driven/);
+  await stage.line("turn left 45").first().click();
+  await stage.page.keyboard.press("End");
+  for (let key = 0; key < 3; key += 1) await stage.page.keyboard.press("Backspace");
+  await since.waitFor({ state: "detached" });
+});
+
 test("the steps of the walkthrough are ticked off once done", async () => {
   assert.deepEqual(await stage.walkthrough(), ["Write a program", "Preview the path", "Run it", "Export the script"]);
 });

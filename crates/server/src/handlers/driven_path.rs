@@ -61,13 +61,14 @@ impl DrivenPaths {
         driven.paths.get(&place(which)).cloned()
     }
 
-    /// Adds the path of a run that has ended, successfully or not; it may not have written any of these files.
+    /// Adds the path of a run that has ended, successfully or not, with what was planned when it began; it may not have
+    /// written any of these files.
     #[cfg(feature = "process")]
     pub(crate) fn add(
         &self,
         which: &ChosenEnvironment,
-        trace: &std::path::Path,
-        map: &std::path::Path,
+        planned: Option<&Value>,
+        (trace, map): (&std::path::Path, &std::path::Path),
         outbox: &Outbox,
         pages: &Pages,
     ) {
@@ -75,7 +76,8 @@ impl DrivenPaths {
         if robots.is_empty() {
             return;
         }
-        let path = serde_json::json!({ "environment": which.environment, "robots": robots });
+        let path =
+            serde_json::json!({ "environment": which.environment, "robots": robots, "planned": planned });
         let mut driven = self.lock();
         driven.paths.insert(place(which), path);
         driven.watched.retain(|(audience, watched)| {

@@ -56,6 +56,12 @@ pub(crate) fn planned_path(
     path.map_err(|error| with_fix(view, which, error))
 }
 
+/// The planned path of an environment as clients get it, without telling anyone of changes; `None` where there is none.
+#[cfg(feature = "process")]
+pub(crate) fn as_json(view: &View, which: &ChosenEnvironment) -> Option<Value> {
+    serde_json::to_value(plan(view, which).ok()?).ok()
+}
+
 fn plan(view: &View, which: &ChosenEnvironment) -> Result<ide::PlannedPath> {
     let path = ide::planned_path(view.database(), environment(view, which)?);
     path.map_err(|why| no_path(view, which, &why))

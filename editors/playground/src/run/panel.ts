@@ -21,7 +21,7 @@ interface Parts {
 interface Run {
   id: EnvironmentId;
   script: string;
-  planned: PlannedPath | undefined;
+  planned: PlannedPath;
   begin: number;
   driven: DrivenPath;
 }
@@ -40,6 +40,8 @@ export class RunPanel {
   private isPythonReady = false;
   private run: Run | undefined;
   private environment: EnvironmentId | undefined;
+  /** How the latest run ended, until another one starts. */
+  private ended: { id: EnvironmentId; text: string } | undefined;
   /** Counts what the user asked for, so that late answers are ignored. */
   private asked = 0;
 
@@ -60,6 +62,14 @@ export class RunPanel {
   /** A text has changed. */
   textChanged(): void {
     void this.showScript();
+  }
+
+  /** There is another path, or none: says so where a run has ended, because its result stays. */
+  pathChanged(): void {
+    if (!this.ended) return;
+    const { id, text } = this.ended;
+    const status = this.parts.preview.hasChangedSinceRun(id) ? `${text}. The program has changed since` : text;
+    if (status !== this.status.textContent) this.say(status);
   }
 
   /** Shows the script of the environment, if its tab is open. */
@@ -93,6 +103,7 @@ export class RunPanel {
     const asked = ++this.asked;
     const { editors, connection, preview } = this.parts;
     this.panel.hidden = false;
+    this.ended = undefined;
     this.log.replaceChildren();
     this.downloads.replaceChildren();
     this.setRunning(true);
@@ -106,7 +117,7 @@ export class RunPanel {
       const planned = (await connection.request(PLANNED_PATH, id)) as PlannedPath;
       if (asked !== this.asked) return;
       await preview.setDriven(id, undefined);
-      this.run = { id, script, planned, begin: performance.now(), driven: { environment: id.environment, robots: [] } };
+      this.run = { id, script, planned, begin: performance.now(), driven: { environment: id.environment, robots: [], planned } };
       if (this.isPythonReady) this.say("Running …");
       const world = { environment: id.environment, program: id.uri, files: { ...this.parts.imported, ...editors.files } };
       worker.postMessage({ file: `${fileName(id.environment)}.py`, script, world, arguments: slamArguments(planned) } satisfies Task);
@@ -134,7 +145,7 @@ export class RunPanel {
         this.print(message.text, message.isError);
         break;
       case "driven":
-        run.driven = { environment: run.id.environment, robots: message.robots };
+        run.driven = { ...run.driven, robots: message.robots };
         this.showProgress(run, message.time);
         void this.parts.preview.setDriven(run.id, run.driven);
         break;
@@ -150,7 +161,7 @@ export class RunPanel {
   }
 
   private showProgress(run: Run, time: number): void {
-    const duration = run.planned?.duration ?? null;
+    const duration = run.planned.duration;
     if (duration !== null && duration > 0) this.progress.value = Math.min(time / duration, 1);
     const of = duration === null ? "" : ` of ${seconds(duration)}`;
     this.say(`Running: ${seconds(time)}${of} simulated`, false);
@@ -161,7 +172,9 @@ export class RunPanel {
     const time = Math.max(0, ...run.driven.robots.map(({ poses }) => poses.at(-1)?.t ?? 0));
     this.end();
     this.progress.value = 1;
-    this.say(`${ENDINGS[code] ?? "The run failed"}: ${seconds(time)} simulated in ${seconds(wall)}`);
+    this.ended = { id: run.id, text: `${ENDINGS[code] ?? "The run failed"}: ${seconds(time)} simulated in ${seconds(wall)}` };
+    this.say(this.ended.text);
+    this.pathChanged();
     this.panel.dataset.code = `${code}`;
     this.log.append(this.table(run));
     this.log.scrollTop = this.log.scrollHeight;
@@ -175,7 +188,7 @@ export class RunPanel {
   private table({ driven, planned }: Run): HTMLElement {
     const rows = driven.robots.map(({ name, poses }) => {
       const end = poses.at(-1);
-      const robot = planned?.robots.find((found) => found.name === name);
+      const robot = planned.robots.find((found) => found.name === name);
       const goal = robot?.unknownAfter === null ? robot.poses.at(-1) : undefined;
       const off = end && goal ? `${(1000 * Math.hypot(end.x - goal.x, end.y - goal.y)).toFixed(1)} mm` : "—";
       const cells = [name, pose(goal), pose(end), off];

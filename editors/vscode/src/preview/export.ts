@@ -11,8 +11,10 @@ export interface Drawings {
   replay?: string | null;
 }
 
-/** Draws the paths of an environment. */
-export type Draw = (environment: EnvironmentId) => Promise<Drawings | undefined>;
+/** Draws the paths of an environment; `isRunCurrent` if its latest run was one of the program as it is now. */
+export type Draw = (environment: EnvironmentId, isRunCurrent: boolean) => Promise<Drawings | undefined>;
+
+type DrawCurrent = (environment: EnvironmentId) => Promise<Drawings | undefined> | undefined;
 
 interface Format extends vscode.QuickPickItem {
   form: "svg" | "png" | "replay";
@@ -25,7 +27,7 @@ const FORMATS: Format[] = [
 ];
 
 /** Asks for a format and a file, and writes the file. Without `draw` there is only the picture of the page. */
-export async function exportPath(environment: EnvironmentId, draw: Draw | undefined, capture: () => Promise<string>): Promise<void> {
+export async function exportPath(environment: EnvironmentId, draw: DrawCurrent | undefined, capture: () => Promise<string>): Promise<void> {
   const formats = draw ? FORMATS : FORMATS.filter(({ form }) => form === "png");
   const format = await vscode.window.showQuickPick(formats, { title: `Export the path of ${environment.environment}`, placeHolder: "Which format?" });
   if (format === undefined) return;

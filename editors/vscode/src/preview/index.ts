@@ -92,11 +92,11 @@ class Preview implements vscode.WebviewPanelSerializer {
     return attached;
   }
 
-  /** The files drawn by the latest run; if there was none, the server draws the planned path, where it can. */
+  /** The files drawn by the latest run; if that says nothing of the program now, the server draws the planned path, where it can. */
   private draw(): Draw | undefined {
     const { runs } = this.session;
-    return runs && (async (environment) => {
-      const driven = runs.picturesOf(environment);
+    return runs && (async (environment, isRunCurrent) => {
+      const driven = isRunCurrent ? runs.picturesOf(environment) : undefined;
       return driven ?? ((await execute(this.session, "pydslrep.previewPath", environment)) as Drawings | undefined);
     });
   }

@@ -72,9 +72,9 @@ export class PreviewPanel {
   /** Shows how a run ended, or that another one has begun; false if the panel is hidden or shows something else. */
   showOutcome(outcome: Outcome | undefined, environment: EnvironmentId): boolean {
     const { shown } = this;
-    if (!outcome) this.host.clearResult();
+    if (!outcome) this.host.clearResult(environment);
     if (!outcome || !this.panel.visible || !shown || keyOf(shown) !== keyOf(environment)) return false;
-    this.host.setResult(outcome.message, outcome.isError, outcome.buttons);
+    this.host.setResult(environment, outcome.message, outcome.isError, outcome.buttons);
     return true;
   }
 
@@ -105,7 +105,9 @@ export class PreviewPanel {
   async export(): Promise<void> {
     const { shown } = this;
     if (shown !== undefined) {
-      await exportPath(shown, this.draw, () => this.host.capture());
+      // What a run drew is not the picture of a program that has changed since.
+      const draw = this.draw && ((environment: EnvironmentId) => this.draw?.(environment, !this.host.isRunEarlier));
+      await exportPath(shown, draw, () => this.host.capture());
     }
   }
 

@@ -6,7 +6,7 @@ use tower_lsp::ls_types::{ExecuteCommandParams, LSPAny, ShowDocumentParams, Uri}
 use super::child::{Ended, Tells, follow};
 use super::failed_run;
 use crate::chosen::ChosenEnvironment;
-use crate::handlers::runs;
+use crate::handlers::{planned_path, runs};
 use crate::server::Server;
 use crate::state::State;
 
@@ -17,9 +17,13 @@ pub(crate) async fn run(
     params: ExecuteCommandParams,
     which: ChosenEnvironment,
 ) -> Result<Option<LSPAny>> {
-    let job = runs::prepare(&server.state().view, &which, &params.command)?;
-    let (running, events, picture) = job.start(&mut server.children())?;
     let is_run = params.command == runs::RUN;
+    let (job, planned) = {
+        let view = &server.state().view;
+        let planned = is_run.then(|| planned_path::as_json(view, &which)).flatten();
+        (runs::prepare(view, &which, &params.command)?, planned)
+    };
+    let (running, events, picture) = job.start(&mut server.children())?;
     let title = format!("{} {}", if is_run { "Running" } else { "Planning" }, which.environment);
     let token = params.work_done_progress_params.work_done_token;
     let tells = if is_run { Tells::Events } else { Tells::Lines };
@@ -28,7 +32,8 @@ pub(crate) async fn run(
     if is_run {
         // The path up to a failure is worth showing too.
         let State { view, pages, .. } = &*server.state();
-        view.driven.add(&which, &runs::trace(&picture), &runs::map(&picture), &server.outbox, pages);
+        let files = (&*runs::trace(&picture), &*runs::map(&picture));
+        view.driven.add(&which, planned.as_ref(), files, &server.outbox, pages);
     }
     // The plan of one environment is drawn even if others have errors; the exit code reports those.
     let is_drawn = || std::fs::metadata(&picture).is_ok_and(|file| file.len() > 0);
