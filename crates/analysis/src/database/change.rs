@@ -29,9 +29,10 @@ impl Database {
     /// As [`Database::open`], by a caller that has the text as a rope. It is kept, not copied, so that a text has one
     /// owner.
     pub fn open_rope(&mut self, path: &str, text: Rope) -> FileId {
-        let (file, edited) = self.facts.open(path, text);
+        let file = self.facts.file_for(path);
+        self.clear(file);
+        let edited = self.facts.open(file, path, text);
         self.start_edit(file, &edited);
-        self.forget(file, &edited.before);
         self.check_with_importers(path);
         self.check_imported(file, edited.imports_before.as_deref().unwrap_or_default());
         file
@@ -44,11 +45,10 @@ impl Database {
         }
         let path = self.path(file).to_owned();
         self.touch(file);
-        let edited = self.facts.close(file);
-        self.note_environments(file, &edited);
-        self.forget(file, &edited.before);
+        self.clear(file);
+        let imports_before = self.facts.close(file);
         self.check_with_importers(&path);
-        self.check_imported(file, edited.imports_before.as_deref().unwrap_or_default());
+        self.check_imported(file, &imports_before);
     }
 
     /// Replaces a range of bytes. A range that does not fit the text, or that cuts a character in two, is moved back
@@ -129,13 +129,24 @@ impl Database {
             .extend(facts.imported_files(file).filter(|imported| self.problems.any_renames(*imported)));
     }
 
+    /// Removes all entities of a file, before another text takes as much memory as they do.
+    fn clear(&mut self, file: FileId) {
+        let before = self.facts.clear(file);
+        self.note_gone_environments(file, &before);
+        self.forget(file, &before);
+    }
+
     /// Keeps account of the environments that come and go with a declaration of theirs.
     fn note_environments(&mut self, file: FileId, edited: &Edited) {
-        for (_, before) in &edited.before {
-            count_environment(&mut self.changed_environments, defined_key(file, before), -1);
-        }
+        self.note_gone_environments(file, &edited.before);
         for parse in edited.after.iter().filter_map(|id| self.facts.parse(*id)) {
             count_environment(&mut self.changed_environments, defined_key(file, parse), 1);
+        }
+    }
+
+    fn note_gone_environments(&mut self, file: FileId, gone: &[(EntityId, Arc<Parse>)]) {
+        for (_, parse) in gone {
+            count_environment(&mut self.changed_environments, defined_key(file, parse), -1);
         }
     }
 

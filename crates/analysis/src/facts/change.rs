@@ -19,11 +19,8 @@ use crate::{Edition, Target};
 const ORDER_STEP: u64 = 1 << 32;
 
 impl Facts {
-    /// Opens a file, or replaces its text if it is open.
-    pub(crate) fn open(&mut self, path: &str, text: Rope) -> (FileId, Edited) {
-        let file = self.file_for(path);
-        let had_environments = self.has_environments(file);
-        let before = self.clear(file);
+    /// Opens a file that is closed or [cleared](Self::clear).
+    pub(crate) fn open(&mut self, file: FileId, path: &str, text: Rope) -> Edited {
         let whole = text.to_string();
         self.files[file.index()] = Some(File { path: path.to_owned(), text, slots: EntitySlots::default() });
         let (mut slots, mut relexed) = (Vec::new(), 0);
@@ -39,19 +36,14 @@ impl Facts {
         }
         let imports_before = Some(self.update_imports(file));
         self.absences.remove_path(path);
-        let edited =
-            Edited { before, after, is_update: false, imports_before, had_environments, relexed, reparsed };
-        (file, edited)
+        Edited { after, imports_before, relexed, reparsed, ..Edited::default() }
     }
 
-    /// Forgets an open file.
-    pub(crate) fn close(&mut self, file: FileId) -> Edited {
-        let had_environments = self.has_environments(file);
-        let before = self.clear(file);
-        let imports_before = Some(self.imports.forget(file));
+    /// Closes a file that is [cleared](Self::clear); returns the paths that it imported.
+    pub(crate) fn close(&mut self, file: FileId) -> Vec<String> {
         self.absences.remove_importer(file);
         self.files[file.index()] = None;
-        Edited { before, imports_before, had_environments, ..Edited::default() }
+        self.imports.forget(file)
     }
 
     /// Takes `after` as the text of an open file, in which only `span` is replaced.
@@ -65,7 +57,8 @@ impl Facts {
         Some(self.apply(file, window))
     }
 
-    fn file_for(&mut self, path: &str) -> FileId {
+    /// The file of a path, which may be new.
+    pub(crate) fn file_for(&mut self, path: &str) -> FileId {
         if let Some(known) = self.by_path.get(path) {
             return *known;
         }
@@ -76,7 +69,7 @@ impl Facts {
     }
 
     /// Removes all entities of a file; returns them.
-    fn clear(&mut self, file: FileId) -> Vec<(EntityId, Arc<Parse>)> {
+    pub(crate) fn clear(&mut self, file: FileId) -> Vec<(EntityId, Arc<Parse>)> {
         let slots = self.files[file.index()].as_mut().map(|file| std::mem::take(&mut file.slots));
         slots.unwrap_or_default().iter().filter_map(|slot| self.remove(slot.entity)).collect()
     }
