@@ -1,7 +1,8 @@
 //! Fixes tried on a copy of the database, to see what they leave.
 
-use pydslrep_syntax::offset;
 use std::collections::BTreeMap;
+
+use pydslrep_syntax::offset;
 
 use crate::{Database, Diagnostic, Edit, FileId, Fix, Severity};
 

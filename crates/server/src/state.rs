@@ -1,12 +1,11 @@
 //! The server's state between two messages.
 
-use pydslrep_syntax::offset;
 use std::sync::Arc;
 
 use futures::channel::oneshot;
 use pydslrep_analysis::EditCounts;
 use pydslrep_config::{Config, Problem};
-use pydslrep_text::Span;
+use pydslrep_text::{Span, offset};
 use pydslrep_workspace::{Changes, MAX_BYTES, ReadError, TextChange, Workspace, path_of};
 use ropey::Rope;
 use rustc_hash::{FxHashMap, FxHashSet};
