@@ -97,16 +97,21 @@ export class Runs implements vscode.Disposable {
     reached("run");
     this.pictures.set(keyOf(environment), result);
     this.tables.appendLine(`${result.output.trimEnd()}\n`);
-    await showPath(environment);
-    this.tell({ message: summary(result.figures), isError: false, buttons: [{ label: "Show Table", press: () => this.tables.show(true) }] }, environment);
+    const buttons = [{ label: "Show Table", press: () => this.tables.show(true) }];
+    await this.showInPreview({ message: summary(result.figures), isError: false, buttons }, environment);
   }
 
   /** Says how a run ended: in the preview if that is visible, where it covers neither legend nor slider. */
   private tell(outcome: Outcome, environment: EnvironmentId): void {
     if (this.show?.(outcome, environment)) return;
-    const { message, isError, buttons } = outcome;
-    if (isError) showError(message, ...buttons);
-    else showInformation(message, { label: "Show Path", press: () => showPath(environment) }, ...buttons);
+    const notify = outcome.isError ? showError : showInformation;
+    notify(outcome.message, ...outcome.buttons, { label: "Show Path", press: () => this.showInPreview(outcome, environment) });
+  }
+
+  /** Brings the preview to the front and says there how a run ended. */
+  private async showInPreview(outcome: Outcome, environment: EnvironmentId): Promise<void> {
+    await showPath(environment);
+    this.tell(outcome, environment);
   }
 
   private markFailure({ uri, range: { start, end } }: Location, message: string): void {

@@ -61,31 +61,60 @@ test("a scene follows when its environment is renamed", async () => {
   assert.match(stage.read("hall.scene.toml"), /\[robots\.guard\]/);
 });
 
-test("a failed run says where, and marks its action until the next one", async () => {
+/** Gives the environment another scene, and returns to the program. */
+async function writeScene(scene) {
   // Quick Open may not know the new name yet.
-  const write = async (scene) => {
-    await stage.tab("hall.scene.toml").click();
-    await stage.line("[robots.guard]").first().click();
-    await stage.page.keyboard.press("Control+A");
-    await stage.page.keyboard.insertText(scene);
-    await stage.tab("yard.pyr").click();
-    await stage.line("move 50").first().click();
-  };
-  const scene = SCENE.replace("rover", "guard");
-  await write(`${scene}\n[[cylinder]]\nat = [0.4, 1]\nradius = 0.1\n`);
+  await stage.tab("hall.scene.toml").click();
+  await stage.line("[robots.guard]").first().click();
+  await stage.page.keyboard.press("Control+A");
+  await stage.page.keyboard.insertText(scene);
+  await stage.tab("yard.pyr").click();
+  await stage.line("move 50").first().click();
+}
+
+const FREE = SCENE.replace("rover", "guard");
+const BLOCKED = `${FREE}\n[[cylinder]]\nat = [0.4, 1]\nradius = 0.1\n`;
+const FAILURE = /^Robot guard, movement patrol, action 1: .*yard\.pyr, line 7/;
+
+test("a failed run says where, and marks its action until the next one", async () => {
+  await writeScene(BLOCKED);
   const marked = stage.page.locator(".squiggly-error");
   assert.equal(await marked.count(), 0);
   await stage.page.keyboard.press("F5");
   const frame = await stage.webview("main.preview");
   const result = frame.locator('[data-part="result"]');
-  await result.filter({ hasText: /^Robot guard, movement patrol, action 1: .*yard\.pyr, line 7/ }).waitFor();
+  await result.filter({ hasText: FAILURE }).waitFor();
   await marked.first().waitFor();
-  await write(scene);
+  await writeScene(FREE);
   await result.filter({ hasText: "The program has changed since." }).waitFor();
   await stage.page.keyboard.press("F5");
   await result.filter({ hasText: /hall: .* simulated in/ }).waitFor();
   await marked.first().waitFor({ state: "detached" });
 });
+
+test("the message of a failed run opens the preview, which then has it", async () => {
+  await writeScene(BLOCKED);
+  await closePreview();
+  await stage.line("move 50").first().click();
+  await stage.page.keyboard.press("F5");
+  await stage.toast(/Robot guard, movement patrol, action 1: .*line 7/, "Show Path");
+  const frame = await stage.webview("main.preview");
+  await frame.locator('[data-part="result"]', { hasText: FAILURE }).waitFor();
+  await frame.locator('main.preview[data-driven="hall"]').waitFor();
+});
+
+test("the preview's button runs what it shows", async () => {
+  await writeScene(FREE);
+  const frame = await stage.webview("main.preview");
+  await frame.getByRole("button", { name: "Run in the simulator" }).click();
+  await frame.locator('[data-part="result"]', { hasText: /hall: .* simulated in/ }).waitFor();
+});
+
+async function closePreview() {
+  const tab = stage.page.locator(".tab", { hasText: "Path: " });
+  await tab.click({ button: "middle" });
+  await tab.waitFor({ state: "detached" });
+}
 
 async function rename(line, word, name) {
   await stage.line(line).first().waitFor();
