@@ -1,8 +1,8 @@
 //! The entity, name or token at a position.
 
 use pydslrep_analysis::{Database, EntityId, EntityRef, FileId};
-use pydslrep_syntax::ast::{Entity, Name};
-use pydslrep_syntax::{EntityKind, Span, Token};
+use pydslrep_syntax::ast::{Entity, Movement, Name};
+use pydslrep_syntax::{EntityKind, Span, Token, TokenKind};
 use smol_str::SmolStr;
 
 use crate::FilePosition;
@@ -59,15 +59,26 @@ pub(crate) fn entities_at(database: &Database, position: FilePosition) -> Vec<En
     at.into_iter().chain(before).collect()
 }
 
-/// The token that touches the cursor, with its range in the file; of two, a word or number rather than punctuation.
+/// The tokens of an entity, with their ranges in the file.
+pub(crate) fn tokens<'a>(entity: &EntityRef<'a>) -> impl Iterator<Item = Token> + use<'a> {
+    let start = entity.span.start;
+    entity.parse.tokens.iter().map(move |(token, span)| (*token, span.shifted(start)))
+}
+
+/// The token that touches the cursor, with its range in the file.
 pub(crate) fn token_at(database: &Database, position: FilePosition) -> Option<Token> {
-    let in_file = |entity: &EntityRef<'_>| -> Vec<Token> {
-        let tokens = entity.parse.tokens.iter().map(|(kind, span)| (*kind, span.shifted(entity.span.start)));
-        tokens.filter(|(_, span)| span.touches(position.offset)).collect()
-    };
-    let touching: Vec<Token> = entities_at(database, position).iter().flat_map(in_file).collect();
-    let is_word = |(kind, _): &&Token| kind.is_name() || kind.is_keyword() || kind.is_number();
-    touching.iter().find(is_word).or(touching.first()).copied()
+    touching(entities_at(database, position).iter().flat_map(tokens), position.offset)
+}
+
+/// The token that touches an offset; of two, a word or number rather than punctuation.
+pub(crate) fn touching(tokens: impl Iterator<Item = Token>, offset: u32) -> Option<Token> {
+    let touching: Vec<Token> = tokens.filter(|(_, span)| span.touches(offset)).collect();
+    touching.iter().find(|(token, _)| is_word(*token)).or(touching.first()).copied()
+}
+
+/// True for a token that another letter or digit may continue.
+pub(crate) fn is_word(token: TokenKind) -> bool {
+    token.is_name() || token.is_keyword() || token.is_number()
 }
 
 /// The range of an entity from its keyword to its last token, without trailing comments.
@@ -77,13 +88,16 @@ pub(crate) fn body(entity: &EntityRef<'_>) -> Span {
     Span::new(entity.span.start, end)
 }
 
-/// The entity that a name refers to, as seen from a file.
-pub(crate) fn resolved<'a>(
-    database: &'a Database,
-    file: FileId,
-    kind: EntityKind,
-    name: &Name,
-) -> Option<(EntityId, &'a Entity)> {
-    let id = database.resolve(file, kind, &name.text).entity()?;
-    Some((id, database.tree(id)?))
+/// The robot that a movement names, as seen from a file.
+pub(crate) fn named_robot(database: &Database, file: FileId, movement: &Movement) -> Option<EntityId> {
+    database.resolve(file, EntityKind::Robot, &movement.robot.as_ref()?.text).entity()
+}
+
+/// Returns whether the wheel of this name is a mecanum wheel; `None` if a file sees no such wheel.
+pub(crate) fn is_mecanum(database: &Database, file: FileId, wheel: &SmolStr) -> Option<bool> {
+    let id = database.resolve(file, EntityKind::Wheel, wheel).entity()?;
+    match database.tree(id)? {
+        Entity::Wheel(wheel) => Some(wheel.mecanum),
+        _ => None,
+    }
 }

@@ -77,7 +77,7 @@ pub use toml::{
 };
 pub use type_definition::goto_type_definition;
 pub use unsettled::TypedStatement;
-pub use workspace_symbols::{SymbolSearch, WorkspaceSymbol, workspace_symbols};
+pub use workspace_symbols::{SymbolSearch, WorkspaceSymbol};
 
 use pydslrep_analysis::FileId;
 

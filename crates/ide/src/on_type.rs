@@ -11,7 +11,7 @@ use pydslrep_syntax::{
 };
 
 use crate::FilePosition;
-use crate::cursor::body;
+use crate::cursor::{body, tokens};
 use crate::statements::Statements;
 
 /// The width of one indentation level, in spaces.
@@ -38,8 +38,7 @@ pub fn format_after_brace(database: &Database, position: FilePosition) -> Vec<Te
 
 /// The tokens of an entity without comments, with their ranges in the file.
 fn significant(entity: &EntityRef<'_>) -> Vec<Token> {
-    let in_file = |(token, span): &Token| (*token, span.shifted(entity.span.start));
-    entity.parse.tokens.iter().map(in_file).filter(|(token, _)| !token.is_comment()).collect()
+    tokens(entity).filter(|(token, _)| !token.is_comment()).collect()
 }
 
 /// The `}` after the typed one, and the white space before it, if the typed one leaves a brace too many.
@@ -192,8 +191,7 @@ impl Line {
     fn depth(&self, database: &Database, position: FilePosition) -> Option<usize> {
         let before = self.blank.start.checked_sub(1)?;
         let entity = database.entity_at(position.file, before)?;
-        let place = |(token, span): &Token| (*token, span.shifted(entity.span.start));
-        let tokens = || entity.parse.tokens.iter().map(place);
+        let tokens = || tokens(&entity);
         if tokens().any(|(_, span)| span.start < self.blank.start && self.blank.start < span.end) {
             // The layout of comments is left to the user.
             return None;

@@ -265,7 +265,7 @@ fn planned_robot(environment: &Environment, robot: &Robot, path: &RobotPath) -> 
         name: robot.name.clone(),
         body: BodySize { length: robot.body.length, width: robot.body.width },
         sensors: robot.sensors.iter().map(sensor).collect(),
-        poses: poses(environment, path),
+        poses: poses(environment, planned_pose(Some(0.0), path.start, None), &path.legs),
         legs: legs(environment, &path.legs),
         unknown_after: path.unknown_after.and_then(|index| action(environment, index, &path.unknown_place)),
         possible: path.possible.iter().filter_map(|way| possible(environment, way)).collect(),
@@ -312,18 +312,14 @@ fn collisions(environment: &Environment, scene: &Scene, plan: &Plan) -> Vec<Plan
     found
 }
 
-fn poses(environment: &Environment, path: &RobotPath) -> Vec<PlannedPose> {
-    poses_of(environment, planned_pose(Some(0.0), path.start, None), &path.legs)
-}
-
-fn poses_of(environment: &Environment, start: PlannedPose, legs: &[Leg]) -> Vec<PlannedPose> {
+fn poses(environment: &Environment, start: PlannedPose, legs: &[Leg]) -> Vec<PlannedPose> {
     std::iter::once(start).chain(legs.iter().flat_map(|leg| on_leg(environment, leg))).collect()
 }
 
 fn possible(environment: &Environment, way: &[Leg]) -> Option<PossibleWay> {
     let first = way.first()?;
     let start = planned_pose(first.start, first.from, None);
-    let poses = poses_of(environment, start, way);
+    let poses = poses(environment, start, way);
     Some(PossibleWay { poses, legs: legs(environment, way) })
 }
 

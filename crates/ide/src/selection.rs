@@ -5,7 +5,7 @@ use pydslrep_analysis::{Database, EntityRef, FileId};
 use pydslrep_syntax::ast::{Action, ActionKind, Entity, Move, References};
 use pydslrep_syntax::{Span, Token, TokenKind};
 
-use crate::cursor::body;
+use crate::cursor::{body, tokens, touching};
 
 /// The ranges around each offset, from the smallest to the whole file. The entities are collected once for all offsets.
 pub fn selection_ranges(database: &Database, file: FileId, offsets: &[u32]) -> Vec<Vec<Span>> {
@@ -57,10 +57,9 @@ impl Ranges {
     /// Adds the ranges inside an entity, the smallest first.
     fn add_inside(&mut self, entity: &EntityRef<'_>) {
         let start = entity.span.start;
-        let tokens: Vec<Token> =
-            entity.parse.tokens.iter().map(|(token, span)| (*token, span.shifted(start))).collect();
-        if let Some((_, span)) = token_at(&tokens, self.offset) {
-            self.add(*span);
+        let tokens: Vec<Token> = tokens(entity).collect();
+        if let Some((_, span)) = touching(tokens.iter().copied(), self.offset) {
+            self.add(span);
         }
         match &entity.parse.entity {
             Some(Entity::Robot(robot)) => {
@@ -154,13 +153,6 @@ impl Ranges {
             }
         }
     }
-}
-
-/// The token that touches an offset; of two, a word or number rather than punctuation.
-fn token_at(tokens: &[Token], offset: u32) -> Option<&Token> {
-    let touching = || tokens.iter().filter(|(_, span)| span.touches(offset));
-    let is_word = |token: TokenKind| token.is_name() || token.is_keyword() || token.is_number();
-    touching().find(|(token, _)| is_word(*token)).or_else(|| touching().next())
 }
 
 #[cfg(test)]

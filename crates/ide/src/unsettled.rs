@@ -8,7 +8,7 @@ use pydslrep_syntax::ast::{Entity, References};
 use pydslrep_syntax::{Expected, Span, Token, TokenKind, expected_after, offset};
 
 use crate::FilePosition;
-use crate::cursor::body;
+use crate::cursor::{body, is_word, tokens};
 
 /// The statement being typed.
 #[derive(Debug)]
@@ -36,8 +36,7 @@ impl<'a> TypedStatement<'a> {
     pub fn at(database: &'a Database, position: FilePosition) -> Option<Self> {
         let place = position.offset;
         let entity = database.entity_at(position.file, place.checked_sub(1)?)?;
-        let in_file = |(token, span): &Token| (*token, span.shifted(entity.span.start));
-        let tokens: Vec<Token> = entity.parse.tokens.iter().map(in_file).collect();
+        let tokens: Vec<Token> = tokens(&entity).collect();
         let text = database.text(position.file)?;
         let line = text.byte_to_line((place as usize).min(text.len_bytes()));
         let begin = offset(text.line_to_byte(line));
@@ -54,7 +53,6 @@ impl<'a> TypedStatement<'a> {
         let is_list_open = opened > braces(TokenKind::CloseBrace, Span::new(begin, end));
         let is_sign_begun =
             matches!(database.slice(position.file, Span::new(place - 1, place)).as_str(), "/" | "^");
-        let (taken, taken_without_word) = Default::default();
         Some(Self {
             database,
             position,
@@ -63,8 +61,8 @@ impl<'a> TypedStatement<'a> {
             gap,
             is_list_open,
             is_sign_begun,
-            taken,
-            taken_without_word,
+            taken: OnceCell::new(),
+            taken_without_word: OnceCell::new(),
         })
     }
 
@@ -182,10 +180,6 @@ impl<'a> TypedStatement<'a> {
         };
         environment.movements.as_ref().is_some_and(contains)
     }
-}
-
-fn is_word(token: TokenKind) -> bool {
-    token.is_name() || token.is_keyword() || token.is_number()
 }
 
 /// Returns the text after the cursor that is parsed as part of the statement being typed; `None` if the statement may

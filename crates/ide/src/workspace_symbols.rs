@@ -24,17 +24,8 @@ pub struct WorkspaceSymbol {
     pub focus: Span,
 }
 
-/// The declarations whose names contain the letters of the query in order, ignoring case; all for an empty query. At most
-/// a thousand.
-pub fn workspace_symbols(database: &Database, query: &str) -> Vec<WorkspaceSymbol> {
-    let mut search = SymbolSearch::new(query);
-    for file in database.files() {
-        search.add(database, file);
-    }
-    search.finish(database)
-}
-
-/// [`workspace_symbols`] file by file, so that the database may change in between.
+/// A search for the declarations whose names contain the letters of the query in order, ignoring case; all for an empty
+/// query. At most a thousand. It reads file by file, so that the database may change in between.
 #[derive(Debug)]
 pub struct SymbolSearch {
     pattern: Pattern,
@@ -110,6 +101,14 @@ mod tests {
     use expect_test::{Expect, expect};
 
     use super::*;
+
+    fn workspace_symbols(database: &Database, query: &str) -> Vec<WorkspaceSymbol> {
+        let mut search = SymbolSearch::new(query);
+        for file in database.files() {
+            search.add(database, file);
+        }
+        search.finish(database)
+    }
 
     fn check(query: &str, expected: &Expect) {
         let mut database = Database::new();

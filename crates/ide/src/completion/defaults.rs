@@ -12,6 +12,7 @@ use smol_str::SmolStr;
 
 use super::context::CompletionContext;
 use super::names::NEARBY_ENTITIES;
+use crate::cursor::{is_mecanum, named_robot};
 
 /// The maximum number of names in a suggested list.
 const MAX_LISTED: usize = 40;
@@ -163,7 +164,7 @@ impl<'a> Defaults<'a> {
 
     fn layout(&self, names: &[SmolStr]) -> Option<Layout> {
         let mecanum: Option<Vec<bool>> =
-            names.iter().map(|name| super::keywords::is_mecanum(self.context, name)).collect();
+            names.iter().map(|name| is_mecanum(self.database(), self.context.file, name)).collect();
         let drive = Drive::from_wheels(&mecanum?)?;
         let names = names.iter().map(|name| escape(name)).collect();
         Some(Layout { drive: drive.word(), names })
@@ -225,22 +226,16 @@ impl<'a> Defaults<'a> {
         &self,
         find: impl Fn(&Action, &dyn Fn(Span) -> Option<String>) -> Option<T>,
     ) -> Option<T> {
-        let own = self.context.movement().zip(self.context.entity);
-        let own = own.and_then(|(movement, id)| {
-            let before: Vec<&Action> =
-                movement.all_actions().filter(|action| self.is_before(action)).collect();
-            before.into_iter().rev().find_map(|action| find(action, &|span| self.written(id, span)))
+        let last = |id, actions: Vec<&Action>| {
+            actions.into_iter().rev().find_map(|action| find(action, &|span| self.written(id, span)))
+        };
+        let own = self.context.movement().zip(self.context.entity).and_then(|(movement, id)| {
+            last(id, movement.all_actions().filter(|action| self.is_before(action)).collect())
         });
         own.or_else(|| {
             let mut before = self.of_kind(EntityKind::Movement).rev().filter(|near| near.is_before);
             before.find_map(|near| match near.tree {
-                Entity::Movement(movement) => {
-                    let actions: Vec<&Action> = movement.all_actions().collect();
-                    actions
-                        .into_iter()
-                        .rev()
-                        .find_map(|action| find(action, &|span| self.written(near.id, span)))
-                }
+                Entity::Movement(movement) => last(near.id, movement.all_actions().collect()),
                 _ => None,
             })
         })
@@ -347,8 +342,7 @@ impl<'a> Defaults<'a> {
 
 /// The robot of a movement, unless its parts are unknown.
 pub(super) fn robot_of<'a>(context: &CompletionContext<'a>, movement: &Movement) -> Option<&'a Robot> {
-    let name = &movement.robot.as_ref()?.text;
-    let id = context.database.resolve(context.file, EntityKind::Robot, name).entity()?;
+    let id = named_robot(context.database, context.file, movement)?;
     match context.database.tree(id)? {
         Entity::Robot(robot) if robot.sensors.is_some() || robot.wheels.is_some() => Some(robot),
         _ => None,

@@ -3,13 +3,13 @@
 use pydslrep_analysis::{EntityId, Target};
 use pydslrep_syntax::ast::{Drive, Entity};
 use pydslrep_syntax::{EntityKind, Expected, Span, TokenKind, expected_after};
-use smol_str::SmolStr;
 
 use super::context::CompletionContext;
 use super::defaults::likely_list;
 use super::names::{MAX_RANKED, NEARBY_ENTITIES};
 use super::snippets::tab_stop;
 use super::{Completion, CompletionKind, Documentation, Rank};
+use crate::cursor::is_mecanum;
 use crate::keyword_pages::{KeywordPage, keyword_page};
 
 impl CompletionContext<'_> {
@@ -63,17 +63,9 @@ fn detail(word: TokenKind, page: &KeywordPage) -> String {
 fn matches_wheels(context: &CompletionContext<'_>, word: TokenKind) -> bool {
     let (Some(drive), Some(Entity::Robot(robot))) = (word.drive(), context.tree) else { return false };
     let names = robot.wheels.iter().flat_map(|list| &list.names);
-    let mecanum: Vec<bool> = names.filter_map(|name| is_mecanum(context, &name.text)).collect();
+    let mecanum: Vec<bool> =
+        names.filter_map(|name| is_mecanum(context.database, context.file, &name.text)).collect();
     Drive::from_wheels(&mecanum) == Some(drive)
-}
-
-/// Returns whether the wheel of this name is a mecanum wheel; `None` if there is no such wheel.
-pub(super) fn is_mecanum(context: &CompletionContext<'_>, name: &SmolStr) -> Option<bool> {
-    let id = context.database.resolve(context.file, EntityKind::Wheel, name).entity()?;
-    match context.database.tree(id)? {
-        Entity::Wheel(wheel) => Some(wheel.mecanum),
-        _ => None,
-    }
 }
 
 /// A keyword with the ones that must follow it.

@@ -15,8 +15,8 @@ use smol_str::SmolStr;
 use super::context::CompletionContext;
 use super::defaults::robot_of;
 use super::filter::starts_with;
-use super::keywords::is_mecanum;
 use super::{Completion, CompletionKind, Documentation, MAX_ITEMS, Rank, paths};
+use crate::cursor::{is_mecanum, named_robot};
 
 /// Up to this many names, all are ranked.
 pub(super) const MAX_RANKED: usize = 1_000;
@@ -130,10 +130,7 @@ impl<'a> Wanted<'a> {
         match (&self.for_, database.tree(id)) {
             (For::Robot(Some(mecanum), _), Some(Entity::Wheel(wheel))) => wheel.mecanum == *mecanum,
             (For::Environment(Some(robots)), Some(Entity::Movement(movement))) => {
-                let robot =
-                    movement.robot.as_ref().zip(database.file_of(id)).and_then(|(name, file)| {
-                        database.resolve(file, EntityKind::Robot, &name.text).entity()
-                    });
+                let robot = database.file_of(id).and_then(|file| named_robot(database, file, movement));
                 robot.is_none_or(|robot| robots.contains(&robot))
             }
             _ => true,
@@ -169,9 +166,8 @@ impl<'a> Wanted<'a> {
 /// The movements that the movement at the cursor can do: visible ones of the same robot that do not do it in turn, those
 /// that nothing does first.
 pub(super) fn to_do(context: &CompletionContext<'_>) -> Vec<SmolStr> {
-    let robot = context.movement().and_then(|movement| movement.robot.as_ref());
-    let robot = robot
-        .and_then(|robot| context.database.resolve(context.file, EntityKind::Robot, &robot.text).entity());
+    let movement = context.movement();
+    let robot = movement.and_then(|movement| named_robot(context.database, context.file, movement));
     let Some(robot) = robot else { return Vec::new() };
     let wanted =
         Wanted { kind: EntityKind::Movement, listed: Vec::new(), for_: For::Environment(Some(vec![robot])) };
@@ -217,7 +213,8 @@ fn doing(database: &Database, own: EntityId, others: impl Iterator<Item = Entity
 
 /// All wheels of a robot are of one kind: that of the listed ones, or that of its type.
 fn wheels_of<'a>(context: &CompletionContext<'a>, robot: &Robot, listed: &[SmolStr]) -> For<'a> {
-    let first = listed.iter().find_map(|name| Some((name, is_mecanum(context, name)?)));
+    let first =
+        listed.iter().find_map(|name| Some((name, is_mecanum(context.database, context.file, name)?)));
     let radius = first.and_then(|(name, _)| {
         let id = context.database.resolve(context.file, EntityKind::Wheel, name).entity()?;
         match context.database.tree(id)? {

@@ -1,11 +1,10 @@
 //! Add a missing `type`, inferred from the wheels.
 
-use pydslrep_analysis::Database;
-use pydslrep_syntax::ast::{Drive, Entity, Name, Robot};
-use pydslrep_syntax::{EntityKind, Span};
+use pydslrep_syntax::Span;
+use pydslrep_syntax::ast::{Drive, Entity, Robot};
 
 use super::{Refactoring, Selection};
-use crate::cursor::resolved;
+use crate::cursor::is_mecanum;
 
 /// The refactoring for a robot without a type, if its wheels determine it.
 pub(super) fn add(selection: &Selection<'_>) -> Option<Refactoring> {
@@ -20,17 +19,12 @@ fn inferred(selection: &Selection<'_>, robot: &Robot) -> Option<Drive> {
         return None;
     }
     let wheels = &robot.wheels.as_ref()?.names;
-    let mecanum: Vec<bool> =
-        wheels.iter().map(|name| is_mecanum(selection.database, selection, name)).collect::<Option<_>>()?;
+    let mecanum: Vec<bool> = wheels
+        .iter()
+        .map(|name| is_mecanum(selection.database, selection.file, &name.text))
+        .collect::<Option<_>>()?;
     let drive = selection.database.drive(selection.entity.id)?;
     mecanum.iter().all(|wheel| *wheel == drive.row().mecanum).then_some(drive)
-}
-
-fn is_mecanum(database: &Database, selection: &Selection<'_>, name: &Name) -> Option<bool> {
-    match resolved(database, selection.file, EntityKind::Wheel, name)?.1 {
-        Entity::Wheel(wheel) => Some(wheel.mecanum),
-        _ => None,
-    }
 }
 
 #[cfg(test)]

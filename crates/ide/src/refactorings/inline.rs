@@ -8,6 +8,7 @@ use rustc_hash::FxHashSet;
 
 use super::rows::Row;
 use super::{Refactoring, RefactoringKind, Selection};
+use crate::cursor::named_robot;
 
 /// The refactoring for the chosen `do`.
 pub(super) fn inline(selection: &Selection<'_>) -> Option<Refactoring> {
@@ -47,7 +48,8 @@ impl<'a> Done<'a> {
         if self.movement.actions.is_empty() {
             return Some(format!("`{name}` has no actions"));
         }
-        if self.robot() != row_robot(row) || self.robot().is_none() {
+        let robot = named_robot(self.database, self.entity.file, self.movement);
+        if robot.is_none() || robot != named_robot(self.database, row.selection.file, row.movement) {
             return Some(format!("`{name}` is not of the same robot"));
         }
         if does(self.database, self.entity.id, row.selection.entity.id) {
@@ -58,11 +60,6 @@ impl<'a> Done<'a> {
         }
         let fits = row.has_room(&self.movement.actions, 0);
         (!fits).then(|| "too many blocks would be one in another".to_owned())
-    }
-
-    fn robot(&self) -> Option<EntityId> {
-        let robot = self.movement.robot.as_ref()?;
-        self.database.resolve(self.entity.file, EntityKind::Robot, &robot.text).entity()
     }
 
     /// A name in its actions that is not the same in the file of the `do`.
@@ -83,11 +80,6 @@ impl<'a> Done<'a> {
         let inner = Span::new(self.body.start + 1, self.body.end.saturating_sub(1));
         self.database.slice(self.entity.file, inner.shifted(self.entity.span.start))
     }
-}
-
-fn row_robot(row: &Row<'_>) -> Option<EntityId> {
-    let Selection { database, file, .. } = row.selection;
-    database.resolve(file, EntityKind::Robot, &row.movement.robot.as_ref()?.text).entity()
 }
 
 /// Returns whether a movement does itself or another one, directly or through others.

@@ -6,6 +6,7 @@ use pydslrep_syntax::ast::{Entity, Movement};
 use pydslrep_syntax::{EntityKind, Span, TokenKind};
 
 use super::{Refactoring, RefactoringKind, Selection};
+use crate::cursor::named_robot;
 
 /// The refactorings for the movement with the cursor in its header.
 pub(super) fn change(selection: &Selection<'_>) -> Vec<Refactoring> {
@@ -170,7 +171,7 @@ impl<'a> Lists<'a> {
 
     fn robot(&self, id: EntityId) -> Option<EntityId> {
         let file = self.database.file_of(id)?;
-        self.database.resolve(file, EntityKind::Robot, &self.tree(id)?.robot.as_ref()?.text).entity()
+        named_robot(self.database, file, self.tree(id)?)
     }
 
     /// "`a`, `b` and `c`".

@@ -98,20 +98,8 @@ impl<'a> Search<'a> {
                 end += 1;
             }
         }
-        let mut stretches = Vec::new();
-        let mut open = None;
-        for index in start..end {
-            match (is_equal(index), open) {
-                (true, None) => open = Some(index),
-                (false, Some(first)) => {
-                    stretches.push(first..index);
-                    open = None;
-                }
-                _ => {}
-            }
-        }
-        stretches.extend(open.map(|first| first..end));
-        stretches
+        let equal: Vec<usize> = (start..end).filter(|index| is_equal(*index)).collect();
+        equal.chunk_by(|a, b| a + 1 == *b).map(|run| run[0]..run[0] + run.len()).collect()
     }
 
     fn do_the_same(&self, a: usize, b: usize) -> bool {

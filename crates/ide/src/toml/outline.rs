@@ -2,7 +2,6 @@
 
 use pydslrep_schema::{Item, NamePart, Span, Table, TableKind, name_parts};
 use pydslrep_syntax::EntityKind;
-use smol_str::SmolStr;
 
 use super::TomlFile;
 use super::statements::statement;
@@ -55,29 +54,17 @@ impl Node {
 
 fn symbol(text: &str, parts: &[NamePart], part: &NamePart, table: &Table, full: Span) -> Symbol {
     let key = part.name.rsplit('.').next().unwrap_or_default();
-    let (name, detail) = match table.kind {
+    let (name, detail, kind) = match table.kind {
         TableKind::Each => match name_of_obstacle(text, parts, part) {
-            Some(name) => (name, key),
-            None => (key, ""),
+            Some(name) => (name, key, SymbolKind::Obstacle),
+            None => (key, "", SymbolKind::Obstacle),
         },
-        TableKind::Named { noun, .. } => (key, noun),
-        TableKind::Once | TableKind::Catalogue { .. } => (key, ""),
+        TableKind::Named { noun: "robot", .. } => (key, "robot", SymbolKind::Entity(EntityKind::Robot)),
+        TableKind::Named { noun: "sensor", .. } => (key, "sensor", SymbolKind::Entity(EntityKind::Sensor)),
+        TableKind::Named { noun, .. } => (key, noun, SymbolKind::Entity(EntityKind::Wheel)),
+        TableKind::Once | TableKind::Catalogue { .. } => (key, "", SymbolKind::Table),
     };
-    let kind = match table.kind {
-        TableKind::Named { noun: "robot", .. } => SymbolKind::Entity(EntityKind::Robot),
-        TableKind::Named { noun: "sensor", .. } => SymbolKind::Entity(EntityKind::Sensor),
-        TableKind::Named { .. } => SymbolKind::Entity(EntityKind::Wheel),
-        TableKind::Each => SymbolKind::Obstacle,
-        TableKind::Once | TableKind::Catalogue { .. } => SymbolKind::Table,
-    };
-    Symbol {
-        name: name.into(),
-        detail: SmolStr::from(detail),
-        kind,
-        full,
-        focus: part.span,
-        children: Vec::new(),
-    }
+    Symbol { name: name.into(), detail: detail.into(), kind, full, focus: part.span, children: Vec::new() }
 }
 
 /// Returns the value of an obstacle's key `name`.

@@ -3,11 +3,9 @@
 //!
 //! They write what already holds in an empty scene, so the robots drive as before until somebody changes it.
 
-use std::fmt::Write;
-
 use pydslrep_analysis::{Database, EntityId, FileId, scene};
 use pydslrep_kinematics::heading_degrees;
-use pydslrep_scene::{Robot, Scene, Sensor};
+use pydslrep_scene::{Mount, Robot, Scene, Sensor};
 use pydslrep_schema::{Span, as_key};
 use pydslrep_syntax::EntityKind;
 use pydslrep_syntax::ast::Entity;
@@ -148,28 +146,17 @@ fn new_scene(environment: &str, floor: &Scene) -> String {
 }
 
 fn robot_table(robot: &Robot) -> String {
-    let start = &robot.start;
-    let heading = heading_degrees(start.theta, 4);
-    format!(
-        "\n[robots.{}]\nstart = [{}, {}, {heading}]\n",
-        as_key(&robot.name),
-        decimal(start.x),
-        decimal(start.y)
-    )
+    let (name, start) = (as_key(&robot.name), &robot.start);
+    let (x, y, heading) = (decimal(start.x), decimal(start.y), heading_degrees(start.theta, 4));
+    format!("\n[robots.{name}]\nstart = [{x}, {y}, {heading}]\n")
 }
 
 fn sensor_table(robot: &Robot, sensor: &Sensor) -> String {
-    let (mount, mut text) = (&sensor.mount, String::new());
-    let name = format!("{}.sensors.{}", as_key(&robot.name), as_key(&sensor.name));
-    let (x, y) = (decimal(mount.pose.x), decimal(mount.pose.y));
-    // Writing into a text cannot fail.
-    let _ = write!(
-        text,
-        "\n[robots.{name}]\nat = [{x}, {y}]\nbearing = {}\n",
-        heading_degrees(mount.pose.theta, 4)
-    );
-    let _ = writeln!(text, "range = {}", decimal(mount.range));
-    text
+    let (robot, name) = (as_key(&robot.name), as_key(&sensor.name));
+    let Mount { pose, range, .. } = &sensor.mount;
+    let (x, y, range) = (decimal(pose.x), decimal(pose.y), decimal(*range));
+    let bearing = heading_degrees(pose.theta, 4);
+    format!("\n[robots.{robot}.sensors.{name}]\nat = [{x}, {y}]\nbearing = {bearing}\nrange = {range}\n")
 }
 
 /// A number with at most four decimals.

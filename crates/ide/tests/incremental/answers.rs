@@ -88,7 +88,11 @@ pub(crate) fn compare(
     }
     let pair = Pair { edited, fresh, file: files[0] };
     let letters = ["", "m", "wl", "r2", "E"][focus.turn % 5];
-    pair.same("workspace symbols", |database| ide::workspace_symbols(database, letters))
+    pair.same("workspace symbols", |database| {
+        let mut search = ide::SymbolSearch::new(letters);
+        database.files().for_each(|file| search.add(database, file));
+        search.finish(database)
+    })
 }
 
 /// The difference between a snapshot and a database with the same text, if any.
