@@ -1,9 +1,8 @@
 //! The features of the client.
 
-use tower_lsp::ls_types::{
-    ClientCapabilities, DiagnosticTag, GotoCapability, MarkupKind, ResourceOperationKind,
-    SemanticTokensFullOptions, TextDocumentClientCapabilities, WorkspaceClientCapabilities,
-};
+use serde::Deserialize;
+use serde_json::Value;
+use tower_lsp::ls_types::{ClientCapabilities, DiagnosticTag, MarkupKind};
 
 use crate::positions::Encoding;
 
@@ -88,119 +87,190 @@ pub(crate) struct ClientFeatures {
 }
 
 impl ClientFeatures {
-    /// Reads them from the parameters of `initialize`.
+    /// Reads them from the parameters of `initialize`, each at its path in the protocol.
     pub(crate) fn new(client: &ClientCapabilities) -> Self {
-        let mut features = Self::default();
         let offered = client.general.as_ref().and_then(|general| general.position_encodings.as_deref());
-        features.encoding = Encoding::negotiate(offered);
-        if let Some(window) = &client.window {
-            features.show_document = window.show_document.as_ref().is_some_and(|show| show.support);
-            features.progress = window.work_done_progress == Some(true);
-        }
-        let commands =
-            client.experimental.as_ref().and_then(|extra| extra.pointer("/commands/commands")?.as_array());
-        features.show_references =
-            commands.is_some_and(|commands| commands.iter().any(|command| command == SHOW_REFERENCES));
-        let pages = client.experimental.as_ref().and_then(|extra| extra.pointer("/pages")?.as_str());
-        features.pages = pages.map(str::to_owned);
-        if let Some(workspace) = &client.workspace {
-            features.read_workspace(workspace);
-        }
-        if let Some(document) = &client.text_document {
-            features.read_diagnostics(document);
-            features.read_documents(document);
-        }
-        features
-    }
-
-    fn read_workspace(&mut self, workspace: &WorkspaceClientCapabilities) {
-        self.watched_files = workspace
-            .did_change_watched_files
-            .is_some_and(|watched| watched.dynamic_registration == Some(true));
-        self.settings = workspace.configuration == Some(true);
-        self.registers_settings = workspace
-            .did_change_configuration
-            .is_some_and(|settings| settings.dynamic_registration == Some(true));
-        self.refreshes_inlay_hints =
-            workspace.inlay_hint.as_ref().is_some_and(|hints| hints.refresh_support == Some(true));
-        self.refreshes_code_lenses =
-            workspace.code_lens.as_ref().is_some_and(|lenses| lenses.refresh_support == Some(true));
-        self.refreshes_diagnostics =
-            workspace.diagnostics.as_ref().is_some_and(|pulled| pulled.refresh_support == Some(true));
-        self.applies_edits = workspace.apply_edit == Some(true);
-        let Some(edit) = &workspace.workspace_edit else { return };
-        let operations = edit.resource_operations.as_deref().unwrap_or_default();
-        self.create_files = operations.contains(&ResourceOperationKind::Create);
-        self.rename_files = operations.contains(&ResourceOperationKind::Rename);
-        // Neovim lists only operations, which only versioned edits can contain.
-        self.versioned_edits = edit.document_changes == Some(true) || !operations.is_empty();
-    }
-
-    fn read_diagnostics(&mut self, document: &TextDocumentClientCapabilities) {
-        self.pull_diagnostics = document.diagnostic.is_some();
-        if let Some(pushed) = &document.publish_diagnostics {
-            self.related_information = pushed.related_information == Some(true);
-            self.diagnostic_tags = pushed.tag_support.clone().map(|tags| tags.value_set).unwrap_or_default();
-            self.code_description = pushed.code_description_support == Some(true);
-        }
-        if let Some(pulled) = &document.diagnostic {
-            // Before 3.18 the protocol had these for pushed diagnostics only.
-            self.related_information |= pulled.related_information == Some(true);
-            if pulled.tag_support.is_some() {
-                self.diagnostic_tags = vec![DiagnosticTag::UNNECESSARY, DiagnosticTag::DEPRECATED];
-            }
-            self.code_description |= pulled.code_description_support == Some(true);
-        }
-    }
-
-    fn read_documents(&mut self, document: &TextDocumentClientCapabilities) {
-        let best = |formats: Option<&Vec<MarkupKind>>| {
-            let offers = |kind: &MarkupKind| formats.is_some_and(|formats| formats.contains(kind));
-            [MarkupKind::Markdown, MarkupKind::PlainText].into_iter().find(offers)
+        let encoding = Encoding::negotiate(offered);
+        let client = serde_json::to_value(client).unwrap_or_default();
+        let has = |path: &str| client.pointer(path).is_some();
+        let can = |path: &str| client.pointer(path) == Some(&Value::Bool(true));
+        let list = |path: &str| client.pointer(path).and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
+        let lists = |path: &str, word: &str| list(path).iter().any(|other| other == word);
+        let best_format = |path: &str| {
+            let formats = [("markdown", MarkupKind::Markdown), ("plaintext", MarkupKind::PlainText)];
+            formats.into_iter().find(|(word, _)| lists(path, word)).map(|(_, format)| format)
         };
-        self.hover_format = best(document.hover.as_ref().and_then(|hover| hover.content_format.as_ref()));
-        if let Some(item) =
-            document.completion.as_ref().and_then(|completion| completion.completion_item.as_ref())
-        {
-            self.completion_format = best(item.documentation_format.as_ref());
-            self.snippets = item.snippet_support == Some(true);
-            self.resolve_completions = item
-                .resolve_support
-                .as_ref()
-                .is_some_and(|support| support.properties.iter().any(|property| property == "documentation"));
+        let pushed_tags = client.pointer("/textDocument/publishDiagnostics/tagSupport/valueSet");
+        let pushed_tags = pushed_tags.and_then(|tags| Vec::deserialize(tags).ok()).unwrap_or_default();
+        let all_tags = || vec![DiagnosticTag::UNNECESSARY, DiagnosticTag::DEPRECATED];
+        let operations = "/workspace/workspaceEdit/resourceOperations";
+        Self {
+            encoding,
+            pull_diagnostics: has("/textDocument/diagnostic"),
+            related_information: can("/textDocument/publishDiagnostics/relatedInformation")
+                || can("/textDocument/diagnostic/relatedInformation"),
+            diagnostic_tags: if has("/textDocument/diagnostic/tagSupport") {
+                all_tags()
+            } else {
+                pushed_tags
+            },
+            code_description: can("/textDocument/publishDiagnostics/codeDescriptionSupport")
+                || can("/textDocument/diagnostic/codeDescriptionSupport"),
+            hover_format: best_format("/textDocument/hover/contentFormat"),
+            completion_format: best_format("/textDocument/completion/completionItem/documentationFormat"),
+            snippets: can("/textDocument/completion/completionItem/snippetSupport"),
+            resolve_completions: lists(
+                "/textDocument/completion/completionItem/resolveSupport/properties",
+                "documentation",
+            ),
+            definition_links: can("/textDocument/definition/linkSupport"),
+            declaration_links: can("/textDocument/declaration/linkSupport"),
+            type_definition_links: can("/textDocument/typeDefinition/linkSupport"),
+            link_tooltips: can("/textDocument/documentLink/tooltipSupport"),
+            prepare_rename: can("/textDocument/rename/prepareSupport"),
+            symbol_tree: can("/textDocument/documentSymbol/hierarchicalDocumentSymbolSupport"),
+            label_offsets: can(
+                "/textDocument/signatureHelp/signatureInformation/parameterInformation/labelOffsetSupport",
+            ),
+            show_references: lists("/experimental/commands/commands", SHOW_REFERENCES),
+            line_folding_only: can("/textDocument/foldingRange/lineFoldingOnly"),
+            action_literals: has("/textDocument/codeAction/codeActionLiteralSupport"),
+            disabled_actions: can("/textDocument/codeAction/disabledSupport"),
+            resolve_edits: can("/textDocument/codeAction/dataSupport")
+                && lists("/textDocument/codeAction/resolveSupport/properties", "edit"),
+            versioned_edits: can("/workspace/workspaceEdit/documentChanges") || !list(operations).is_empty(),
+            applies_edits: can("/workspace/applyEdit"),
+            create_files: lists(operations, "create"),
+            rename_files: lists(operations, "rename"),
+            token_deltas: can("/textDocument/semanticTokens/requests/full/delta"),
+            watched_files: can("/workspace/didChangeWatchedFiles/dynamicRegistration"),
+            settings: can("/workspace/configuration"),
+            registers_settings: can("/workspace/didChangeConfiguration/dynamicRegistration"),
+            progress: can("/window/workDoneProgress"),
+            refreshes_diagnostics: can("/workspace/diagnostics/refreshSupport"),
+            refreshes_inlay_hints: can("/workspace/inlayHint/refreshSupport"),
+            refreshes_code_lenses: can("/workspace/codeLens/refreshSupport"),
+            show_document: can("/window/showDocument/support"),
+            pages: client.pointer("/experimental/pages").and_then(Value::as_str).map(str::to_owned),
         }
-        let links = |goto: Option<&GotoCapability>| goto.is_some_and(|goto| goto.link_support == Some(true));
-        self.definition_links = links(document.definition.as_ref());
-        self.declaration_links = links(document.declaration.as_ref());
-        self.type_definition_links = links(document.type_definition.as_ref());
-        self.link_tooltips =
-            document.document_link.as_ref().is_some_and(|link| link.tooltip_support == Some(true));
-        self.prepare_rename =
-            document.rename.as_ref().is_some_and(|rename| rename.prepare_support == Some(true));
-        self.token_deltas = document.semantic_tokens.as_ref().is_some_and(|tokens| {
-            matches!(tokens.requests.full, Some(SemanticTokensFullOptions::Delta { delta: Some(true) }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    fn features(client: Value) -> ClientFeatures {
+        ClientFeatures::new(&serde_json::from_value(client).unwrap())
+    }
+
+    #[test]
+    fn a_client_without_capabilities_has_no_features() {
+        assert_eq!(features(json!({})), ClientFeatures::default());
+    }
+
+    /// Each path is one that the framework's types have.
+    #[test]
+    fn a_client_with_all_capabilities_has_all_features() {
+        let item = json!({
+            "documentationFormat": ["plaintext"],
+            "snippetSupport": true,
+            "resolveSupport": { "properties": ["detail", "documentation"] },
         });
-        self.symbol_tree = document
-            .document_symbol
-            .as_ref()
-            .is_some_and(|symbols| symbols.hierarchical_document_symbol_support == Some(true));
-        if let Some(signature) =
-            document.signature_help.as_ref().and_then(|help| help.signature_information.as_ref())
-        {
-            let parameter = signature.parameter_information.as_ref();
-            self.label_offsets =
-                parameter.is_some_and(|parameter| parameter.label_offset_support == Some(true));
-        }
-        self.line_folding_only =
-            document.folding_range.as_ref().is_some_and(|folding| folding.line_folding_only == Some(true));
-        if let Some(action) = &document.code_action {
-            self.action_literals = action.code_action_literal_support.is_some();
-            self.disabled_actions = action.disabled_support == Some(true);
-            self.resolve_edits = action.data_support == Some(true)
-                && action
-                    .resolve_support
-                    .as_ref()
-                    .is_some_and(|support| support.properties.iter().any(|property| property == "edit"));
-        }
+        let label = json!({ "parameterInformation": { "labelOffsetSupport": true } });
+        let action = json!({
+            "codeActionLiteralSupport": { "codeActionKind": { "valueSet": [] } },
+            "disabledSupport": true,
+            "dataSupport": true,
+            "resolveSupport": { "properties": ["edit"] },
+        });
+        let document = json!({
+            "publishDiagnostics": {
+                "relatedInformation": true,
+                "codeDescriptionSupport": true,
+                "tagSupport": { "valueSet": [2] },
+            },
+            "hover": { "contentFormat": ["plaintext", "markdown"] },
+            "completion": { "completionItem": item },
+            "definition": { "linkSupport": true },
+            "declaration": { "linkSupport": true },
+            "typeDefinition": { "linkSupport": true },
+            "documentLink": { "tooltipSupport": true },
+            "rename": { "prepareSupport": true },
+            "documentSymbol": { "hierarchicalDocumentSymbolSupport": true },
+            "signatureHelp": { "signatureInformation": label },
+            "foldingRange": { "lineFoldingOnly": true },
+            "codeAction": action,
+            "semanticTokens": {
+                "requests": { "full": { "delta": true } },
+                "tokenTypes": [], "tokenModifiers": [], "formats": [],
+            },
+        });
+        let workspace = json!({
+            "applyEdit": true,
+            "workspaceEdit": { "resourceOperations": ["create", "rename"] },
+            "didChangeWatchedFiles": { "dynamicRegistration": true },
+            "configuration": true,
+            "didChangeConfiguration": { "dynamicRegistration": true },
+            "diagnostics": { "refreshSupport": true },
+            "inlayHint": { "refreshSupport": true },
+            "codeLens": { "refreshSupport": true },
+        });
+        let mut client = json!({
+            "general": { "positionEncodings": ["utf-8", "utf-16"] },
+            "window": { "workDoneProgress": true, "showDocument": { "support": true } },
+            "experimental": { "commands": { "commands": [SHOW_REFERENCES] }, "pages": "pages" },
+            "textDocument": document,
+            "workspace": workspace,
+        });
+        let all = ClientFeatures {
+            encoding: Encoding::Utf8,
+            pull_diagnostics: false,
+            related_information: true,
+            diagnostic_tags: vec![DiagnosticTag::DEPRECATED],
+            code_description: true,
+            hover_format: Some(MarkupKind::Markdown),
+            completion_format: Some(MarkupKind::PlainText),
+            snippets: true,
+            resolve_completions: true,
+            definition_links: true,
+            declaration_links: true,
+            type_definition_links: true,
+            link_tooltips: true,
+            prepare_rename: true,
+            symbol_tree: true,
+            label_offsets: true,
+            show_references: true,
+            line_folding_only: true,
+            action_literals: true,
+            disabled_actions: true,
+            resolve_edits: true,
+            versioned_edits: true,
+            applies_edits: true,
+            create_files: true,
+            rename_files: true,
+            token_deltas: true,
+            watched_files: true,
+            settings: true,
+            registers_settings: true,
+            progress: true,
+            refreshes_diagnostics: true,
+            refreshes_inlay_hints: true,
+            refreshes_code_lenses: true,
+            show_document: true,
+            pages: Some("pages".to_owned()),
+        };
+        assert_eq!(features(client.clone()), all);
+        let pulled = json!({
+            "relatedInformation": true,
+            "codeDescriptionSupport": true,
+            "tagSupport": { "valueSet": [] },
+        });
+        client["textDocument"]["publishDiagnostics"] = Value::Null;
+        client["textDocument"]["diagnostic"] = pulled;
+        let diagnostic_tags = vec![DiagnosticTag::UNNECESSARY, DiagnosticTag::DEPRECATED];
+        assert_eq!(features(client), ClientFeatures { pull_diagnostics: true, diagnostic_tags, ..all });
     }
 }
