@@ -1,6 +1,6 @@
 //! Which environment of which program a client means, and which paths it has.
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::Arc;
 
 use pydslrep_analysis::Fingerprint;
 use pydslrep_ide::PlannedPath;
@@ -9,6 +9,7 @@ use tower_lsp::jsonrpc::Error;
 use tower_lsp::ls_types::Uri;
 
 use crate::page::Audience;
+use crate::shared::Shared;
 
 /// An environment: the data of an action until it is chosen, and the argument of commands.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -21,12 +22,12 @@ pub(crate) struct ChosenEnvironment {
 
 /// The planned paths that the client and pages have, and are notified of; clones share them.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct WatchedPaths(Arc<Mutex<Vec<Watched>>>);
+pub(crate) struct WatchedPaths(Arc<Shared<Vec<Watched>>>);
 
 impl WatchedPaths {
     /// Notes who wants to know when a path changes, even if that is before it is planned.
     pub(crate) fn watch(&self, which: &ChosenEnvironment, audience: Audience) {
-        let mut all = self.lock();
+        let mut all = self.0.lock();
         if all.iter().all(|watched| !watched.is(which, audience)) {
             let which = which.clone();
             all.push(Watched { audience, which, fingerprint: None, sent: Sent::Long });
@@ -35,23 +36,19 @@ impl WatchedPaths {
 
     /// Notes that an audience has a path now.
     pub(crate) fn set(&self, watched: Watched) {
-        let mut all = self.lock();
+        let mut all = self.0.lock();
         all.retain(|other| !other.is(&watched.which, watched.audience));
         all.push(watched);
     }
 
     /// Returns all paths, and forgets them.
     pub(crate) fn take(&self) -> Vec<Watched> {
-        std::mem::take(&mut *self.lock())
+        std::mem::take(&mut *self.0.lock())
     }
 
     /// Notes that any path may have changed.
     pub(crate) fn forget_fingerprints(&self) {
-        self.lock().iter_mut().for_each(|watched| watched.fingerprint = None);
-    }
-
-    fn lock(&self) -> MutexGuard<'_, Vec<Watched>> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+        self.0.lock().iter_mut().for_each(|watched| watched.fingerprint = None);
     }
 }
 

@@ -163,7 +163,8 @@ fn read_beside<A>(
     read: impl Fn(&View) -> A,
 ) -> Result<A> {
     loop {
-        if let Some(answer) = server.read_beside(version, token.clone(), &read) {
+        let loan = server.state().lend(version);
+        if let Some(answer) = loan.and_then(|loan| loan.read(token.clone(), &read)) {
             return Ok(answer);
         }
         if caller.audience == Audience::Client {

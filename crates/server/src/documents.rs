@@ -1,7 +1,7 @@
 //! Documents as the client knows them: their addresses, and the client's state of each.
 
 use std::str::FromStr;
-use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
+use std::sync::{Arc, OnceLock};
 
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
 use pydslrep_analysis::{CancellationToken, FileId, Snapshot};
@@ -13,6 +13,7 @@ use ropey::Rope;
 use tower_lsp::ls_types::{InitializeParams, TextDocumentContentChangeEvent, Uri};
 
 use crate::positions::{self, Encoding};
+use crate::shared::Shared;
 
 /// True if files are on a disk; otherwise every address with a path is a file.
 const HAS_DISK: bool = cfg!(feature = "process");
@@ -98,17 +99,6 @@ pub(crate) struct Memory {
     pub(crate) lenses: Shared<ShownLenses>,
     /// The semantic tokens the client has, if it takes changes of them.
     pub(crate) tokens: Shared<SentTokens>,
-}
-
-/// A value that one request at a time reads and changes.
-#[derive(Debug, Default)]
-pub(crate) struct Shared<T>(Mutex<T>);
-
-impl<T> Shared<T> {
-    /// The value; a request that was cancelled may have left it as any request would.
-    pub(crate) fn lock(&self) -> MutexGuard<'_, T> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
-    }
 }
 
 impl ClientDocument {

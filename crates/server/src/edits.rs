@@ -4,8 +4,8 @@ use pydslrep_analysis::Edit;
 use pydslrep_text::Span;
 use tower_lsp::ls_types::{
     CreateFile, CreateFileOptions, DocumentChangeOperation, DocumentChanges, OneOf,
-    OptionalVersionedTextDocumentIdentifier, Position, Range, RenameFile, ResourceOp, TextDocumentEdit,
-    TextEdit, Uri, WorkspaceEdit,
+    OptionalVersionedTextDocumentIdentifier, Range, RenameFile, ResourceOp, TextDocumentEdit, TextEdit, Uri,
+    WorkspaceEdit,
 };
 
 use crate::documents::Document;
@@ -69,14 +69,18 @@ impl<'a> Edits<'a> {
 /// The edit that creates a file with a text, which fails if it exists.
 pub(crate) fn new_file(uri: Uri, text: String) -> WorkspaceEdit {
     let options = CreateFileOptions { overwrite: None, ignore_if_exists: None };
-    let create = CreateFile { uri: uri.clone(), options: Some(options), annotation_id: None };
+    of_file(uri, TextEdit::new(Range::default(), text), Some(options))
+}
+
+/// An edit of one file, which is created before if there are options for that.
+pub(crate) fn of_file(uri: Uri, edit: TextEdit, create: Option<CreateFileOptions>) -> WorkspaceEdit {
+    let create = create.map(|options| {
+        let create = CreateFile { uri: uri.clone(), options: Some(options), annotation_id: None };
+        DocumentChangeOperation::Op(ResourceOp::Create(create))
+    });
     let text_document = OptionalVersionedTextDocumentIdentifier { uri, version: None };
-    let start = Range::new(Position::new(0, 0), Position::new(0, 0));
-    let edits = vec![OneOf::Left(TextEdit::new(start, text))];
-    let operations = vec![
-        DocumentChangeOperation::Op(ResourceOp::Create(create)),
-        DocumentChangeOperation::Edit(TextDocumentEdit { text_document, edits }),
-    ];
+    let edit = TextDocumentEdit { text_document, edits: vec![OneOf::Left(edit)] };
+    let operations = create.into_iter().chain([DocumentChangeOperation::Edit(edit)]).collect();
     let document_changes = Some(DocumentChanges::Operations(operations));
     WorkspaceEdit { document_changes, ..WorkspaceEdit::default() }
 }

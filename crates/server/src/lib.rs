@@ -52,6 +52,7 @@ mod readers;
 mod runtimes;
 mod server;
 mod session;
+mod shared;
 mod state;
 mod typing;
 mod view;

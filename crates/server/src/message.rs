@@ -1,13 +1,15 @@
 //! Messages: the bytes of a frame as a JSON-RPC request, notification or response, or the error to answer with.
 
+use std::borrow::Cow;
 use std::sync::mpsc::Sender;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use serde::Serialize;
 use serde_json::{Map, Value};
 use tower_lsp::jsonrpc::{Error, ErrorCode, Id, Request, Response};
-use tower_lsp::ls_types::notification::Notification;
+use tower_lsp::ls_types::notification::{Notification, ShowMessage};
 use tower_lsp::ls_types::request::{self, Request as _};
+use tower_lsp::ls_types::{MessageType, ShowMessageParams};
 
 use crate::load::Load;
 
@@ -44,19 +46,14 @@ pub(crate) fn parse(body: &[u8]) -> Result<Incoming, Response> {
             "a message must be a JSON object; batches are not part of the protocol",
         ));
     };
-    let id = fields.remove("id").map(serde_json::from_value::<Id>);
-    let (id, id_usable) = match id {
-        None => (None, true),
-        Some(Ok(id)) => (Some(id), true),
-        Some(Err(_)) => (None, false),
-    };
-    let answer_to = id.clone().unwrap_or_default();
+    let id: Result<Option<Id>, _> = fields.remove("id").map(serde_json::from_value).transpose();
+    let answer_to = id.as_ref().ok().cloned().flatten().unwrap_or_default();
     if fields.get("jsonrpc").and_then(Value::as_str) != Some("2.0") {
         return Err(invalid(answer_to, "`jsonrpc` must be \"2.0\""));
     }
-    if !id_usable {
+    let Ok(id) = id else {
         return Err(invalid(Id::Null, "`id` must be an integer or a string"));
-    }
+    };
     match fields.remove("method") {
         Some(Value::String(method)) => Ok(Incoming::Request(request(method, id, &mut fields))),
         Some(_) => Err(invalid(answer_to, "`method` must be a string")),
@@ -92,6 +89,11 @@ fn without_lone_surrogates(body: &[u8]) -> Option<Vec<u8>> {
 fn request(method: String, id: Option<Id>, fields: &mut Map<String, Value>) -> Request {
     // Some clients send `{}` where the protocol has no parameters at all.
     let params = fields.remove("params").filter(|_| method != request::Shutdown::METHOD);
+    build(method, id, params)
+}
+
+/// A request with an id and parameters where there are any.
+pub(crate) fn build(method: impl Into<Cow<'static, str>>, id: Option<Id>, params: Option<Value>) -> Request {
     let mut request = Request::build(method);
     if let Some(params) = params {
         request = request.params(params);
@@ -198,16 +200,15 @@ impl Outbox {
         self.send_server_message(&Message { jsonrpc: "2.0", method: N::METHOD, params });
     }
 
+    /// Shows a message to the user.
+    pub(crate) fn tell(&self, typ: MessageType, message: String) {
+        self.send_notification::<ShowMessage>(&ShowMessageParams { typ, message });
+    }
+
     /// Sends a request whose answer is ignored; `number` makes its id unique.
     pub(crate) fn send_server_request<R: request::Request<Params = ()>>(&self, number: u64) {
-        #[derive(Serialize)]
-        struct Message {
-            jsonrpc: &'static str,
-            id: String,
-            method: &'static str,
-        }
-        let id = format!("{IGNORED}{number}");
-        self.send_server_message(&Message { jsonrpc: "2.0", id, method: R::METHOD });
+        let id = Id::String(format!("{IGNORED}{number}"));
+        self.send_server_message(&build(R::METHOD, Some(id), None));
     }
 
     /// Sends a request or notification of ours, unless the client has shut the session down.

@@ -46,24 +46,15 @@ pub(crate) fn serve(
     output: impl Write + Send + 'static,
     launch: Launch,
 ) -> io::Result<Ending> {
-    serve_with(input, output, |outbox, runtime| {
+    serve_with(input, output, &Load::new(MAX_UNWRITTEN), |outbox, runtime| {
         let session = Session::new(outbox, move |unfinished| drop(runtime.spawn(unfinished)));
         session.launch(launch);
         session
     })
 }
 
-/// [`serve`] with the session that `start` makes.
+/// [`serve`] with the session that `start` makes, and what may wait to be written.
 fn serve_with(
-    input: impl Read + Send + 'static,
-    output: impl Write + Send + 'static,
-    start: impl FnOnce(Outbox, runtime::Handle) -> Session,
-) -> io::Result<Ending> {
-    serve_with_load(input, output, &Load::new(MAX_UNWRITTEN), start)
-}
-
-/// [`serve_with`] with the most that may wait to be written.
-fn serve_with_load(
     input: impl Read + Send + 'static,
     output: impl Write + Send + 'static,
     load: &Load,

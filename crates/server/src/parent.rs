@@ -2,6 +2,8 @@
 //! the pipe and keep it open. So the client's process is watched too, where that costs nothing.
 
 use std::fs;
+use std::iter::successors;
+use std::os::unix::process::parent_id;
 use std::thread;
 
 use rustix::event::{PollFd, PollFlags, poll};
@@ -31,18 +33,9 @@ pub(crate) fn leave_with(client: u32, tidy_up: impl Fn() + Send + 'static) {
 }
 
 fn is_ancestor(client: u32) -> bool {
-    let mut process = std::os::unix::process::parent_id();
+    let parent = |process: &u32| parent_of(*process).filter(|parent| *parent > 1);
     // A longer chain can only be one that changed while it was read.
-    for _ in 0..64 {
-        if process == client {
-            return true;
-        }
-        match parent_of(process) {
-            Some(parent) if parent > 1 => process = parent,
-            _ => return false,
-        }
-    }
-    false
+    successors(Some(parent_id()), parent).take(64).any(|process| process == client)
 }
 
 /// The name in `/proc/…/stat` may contain spaces and brackets; the state and the parent follow its last bracket.
@@ -58,7 +51,7 @@ mod tests {
 
     #[test]
     fn ancestors_are_recognised() {
-        let parent = std::os::unix::process::parent_id();
+        let parent = parent_id();
         assert!(is_ancestor(parent));
         assert!(!is_ancestor(std::process::id()));
         assert_eq!(parent_of(std::process::id()), Some(parent));

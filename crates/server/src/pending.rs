@@ -1,16 +1,18 @@
 //! Requests that are not answered yet, and how a client cancels them.
 
 use std::future::Future;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::Arc;
 
 use futures::future::{AbortHandle, AbortRegistration, Abortable};
 use pydslrep_analysis::CancellationToken;
 use rustc_hash::FxHashMap;
 use tower_lsp::jsonrpc::{Error, Id, Result};
 
+use crate::shared::Shared;
+
 /// The requests of a session that are not answered yet, by their ids; clones share them.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct PendingRequests(Arc<Mutex<FxHashMap<Id, Cancellation>>>);
+pub(crate) struct PendingRequests(Arc<Shared<FxHashMap<Id, Cancellation>>>);
 
 /// The two ways to stop a request.
 #[derive(Debug)]
@@ -28,7 +30,7 @@ impl PendingRequests {
     ///
     /// If another one with the same id is not answered yet.
     pub(crate) fn register(&self, id: &Id) -> Result<PendingRequest> {
-        let mut requests = self.lock();
+        let mut requests = self.0.lock();
         if requests.contains_key(id) {
             return Err(Error::invalid_params("a request with this id is not answered yet"));
         }
@@ -41,14 +43,10 @@ impl PendingRequests {
 
     /// Cancels a request, unless it is answered already.
     pub(crate) fn cancel(&self, id: &Id) {
-        if let Some(Cancellation { token, abort }) = self.lock().get(id) {
+        if let Some(Cancellation { token, abort }) = self.0.lock().get(id) {
             token.cancel();
             abort.abort();
         }
-    }
-
-    fn lock(&self) -> MutexGuard<'_, FxHashMap<Id, Cancellation>> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -82,7 +80,7 @@ struct Entry {
 
 impl Drop for Entry {
     fn drop(&mut self) {
-        self.requests.lock().remove(&self.id);
+        self.requests.0.lock().remove(&self.id);
     }
 }
 

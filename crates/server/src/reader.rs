@@ -2,7 +2,6 @@
 
 use std::future::{Future, poll_fn};
 use std::mem::replace;
-use std::ops::Deref;
 use std::sync::MutexGuard;
 use std::task::Poll;
 
@@ -10,7 +9,6 @@ use futures::channel::oneshot;
 
 use crate::server::Server;
 use crate::state::State;
-use crate::view::View;
 use crate::work::SHORT;
 
 /// Reads the view and lets other messages in between. What it saw of one file may have changed when it comes to the
@@ -27,9 +25,9 @@ impl Reader {
         Self { server, read: 0 }
     }
 
-    /// The current view. Never keep it across an `.await`.
-    pub(crate) fn view(&self) -> CurrentView<'_> {
-        CurrentView(self.server.state())
+    /// The current state. Never keep it across an `.await`.
+    pub(crate) fn state(&self) -> MutexGuard<'_, State> {
+        self.server.state()
     }
 
     /// To be awaited after each file, with its length in bytes: lets others have their turn now and then.
@@ -48,18 +46,6 @@ impl Reader {
         waiting.retain(|other| !other.is_canceled());
         waiting.push(sender);
         change
-    }
-}
-
-/// The view as it is now; nothing changes it as long as this lives.
-#[derive(Debug)]
-pub(crate) struct CurrentView<'a>(MutexGuard<'a, State>);
-
-impl Deref for CurrentView<'_> {
-    type Target = View;
-
-    fn deref(&self) -> &View {
-        &self.0.view
     }
 }
 

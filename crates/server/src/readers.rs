@@ -3,11 +3,12 @@
 //! A change never waits for a reader to finish: it cancels all of them, and they stop at their next check. Should one
 //! take too long to stop, it keeps the workspace as it was, and the change is made in a copy.
 
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Condvar};
 use std::time::Duration;
 
 use pydslrep_analysis::{CancellationToken, cancellable};
 
+use crate::shared::Shared;
 use crate::view::View;
 
 /// The time that a change waits for readers to stop before it copies the workspace, which takes some milliseconds
@@ -17,7 +18,7 @@ const READER_TIMEOUT: Duration = Duration::from_millis(20);
 /// The readers on other threads.
 #[derive(Debug, Default)]
 pub(crate) struct Readers {
-    tokens: Mutex<Vec<CancellationToken>>,
+    tokens: Shared<Vec<CancellationToken>>,
     one_has_stopped: Condvar,
 }
 
@@ -40,20 +41,16 @@ impl Readers {
     /// Lends a view; its reader is cancelled when the workspace changes.
     pub(crate) fn lend(self: &Arc<Self>, view: View) -> Loan {
         let token = CancellationToken::default();
-        self.lock().push(token.clone());
+        self.tokens.lock().push(token.clone());
         Loan { view, turn: Turn { readers: Arc::clone(self), token } }
     }
 
     /// Has all readers stop, and waits for them a little.
     pub(crate) fn stop(&self) {
-        let tokens = self.lock();
+        let tokens = self.tokens.lock();
         tokens.iter().for_each(CancellationToken::cancel);
         let waited = self.one_has_stopped.wait_timeout_while(tokens, READER_TIMEOUT, |left| !left.is_empty());
         drop(waited);
-    }
-
-    fn lock(&self) -> MutexGuard<'_, Vec<CancellationToken>> {
-        self.tokens.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -66,7 +63,7 @@ impl Loan {
 
 impl Drop for Turn {
     fn drop(&mut self) {
-        self.readers.lock().retain(|token| !token.is_same(&self.token));
+        self.readers.tokens.lock().retain(|token| !token.is_same(&self.token));
         self.readers.one_has_stopped.notify_all();
     }
 }

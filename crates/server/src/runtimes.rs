@@ -1,24 +1,24 @@
 //! The package that scripts import, written next to them.
 
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, OnceLock};
 use std::thread;
 
 use futures::channel::oneshot;
 use pydslrep_output::{RuntimeFolder, has_runtime, write_runtime};
 use rustc_hash::FxHashSet;
-use tower_lsp::ls_types::notification::ShowMessage;
-use tower_lsp::ls_types::{MessageType, ShowMessageParams};
+use tower_lsp::ls_types::MessageType;
 
 use crate::log::log;
 use crate::message::Outbox;
+use crate::shared::Shared;
 
 /// Writes packages, and remembers what the user knows already; clones share it.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Runtimes {
     /// True if the user's Python has the package; empty until it was asked.
     is_installed: Arc<OnceLock<bool>>,
-    reported: Arc<Mutex<FxHashSet<String>>>,
+    reported: Arc<Shared<FxHashSet<String>>>,
 }
 
 impl Runtimes {
@@ -45,9 +45,8 @@ impl Runtimes {
             Ok(written) => (MessageType::INFO, format!("Runtime of scripts: {written}")),
             Err(error) => (MessageType::WARNING, error.to_string()),
         };
-        let is_new = self.reported.lock().unwrap_or_else(PoisonError::into_inner).insert(message.clone());
-        if is_new {
-            outbox.send_notification::<ShowMessage>(&ShowMessageParams { typ, message });
+        if self.reported.lock().insert(message.clone()) {
+            outbox.tell(typ, message);
         }
     }
 }

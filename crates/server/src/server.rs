@@ -6,7 +6,6 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 
 use futures::channel::oneshot;
-use pydslrep_analysis::CancellationToken;
 use tower_lsp::ls_types::{
     ProgressToken, WorkDoneProgressCancelParams, WorkDoneProgressCreateParams, request,
 };
@@ -19,7 +18,6 @@ use crate::log::log;
 use crate::message::Outbox;
 use crate::pending::PendingRequests;
 use crate::state::State;
-use crate::view::View;
 #[cfg(feature = "process")]
 use crate::web::WebServer;
 
@@ -87,18 +85,6 @@ impl Server {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Reads the view of a version of the workspace beside the message loop; `None` if that has changed since or does so
-    /// meanwhile, or if `token` is cancelled.
-    pub(crate) fn read_beside<A>(
-        &self,
-        version: u64,
-        token: CancellationToken,
-        read: impl FnOnce(&View) -> A,
-    ) -> Option<A> {
-        let loan = self.state().lend(version)?;
-        loan.read(token, read)
-    }
-
     /// The server of the path preview's pages, if it was started.
     #[cfg(feature = "process")]
     pub(crate) fn web(&self) -> MutexGuard<'_, Option<WebServer>> {
@@ -164,22 +150,24 @@ impl Server {
     }
 
     async fn begin(&self, title: &str) -> Option<OngoingProgress<Unbounded, NotCancellable>> {
-        if !self.state().view.client.progress {
-            return None;
-        }
         let number = {
             let mut state = self.state();
             state.progresses += 1;
             state.progresses
         };
-        let token = ProgressToken::String(format!("pydslrep: {title} ({number})"));
-        self.client
-            .send_request::<request::WorkDoneProgressCreate>(WorkDoneProgressCreateParams {
-                token: token.clone(),
-            })
-            .await
-            .ok()?;
+        let token = self.progress_token(format!("pydslrep: {title} ({number})")).await?;
         Some(self.client.progress(token, title).begin().await)
+    }
+
+    /// Begins a progress under a name that no other has; `None` where the client shows none.
+    pub(crate) async fn progress_token(&self, name: String) -> Option<ProgressToken> {
+        if !self.state().view.client.progress {
+            return None;
+        }
+        let token = ProgressToken::String(name);
+        let params = WorkDoneProgressCreateParams { token: token.clone() };
+        self.client.send_request::<request::WorkDoneProgressCreate>(params).await.ok()?;
+        Some(token)
     }
 
     /// Asks clients that pull diagnostics and hints to pull them again: other documents than theirs have changed.

@@ -21,7 +21,7 @@ use crate::dispatch::{Reply, Table, TableLayer, TableService};
 use crate::handlers;
 use crate::life_cycle::LifeCycle;
 use crate::log::log;
-use crate::message::{IGNORED, Incoming, Outbox, encode, parse, refuse};
+use crate::message::{IGNORED, Incoming, Outbox, build, encode, parse, refuse};
 #[cfg(feature = "process")]
 use crate::pending::PendingRequests;
 use crate::server::{Server, Stage};
@@ -57,7 +57,7 @@ impl fmt::Debug for Session {
 impl Session {
     /// A session whose messages to the client go to `outbox`. `spawn` runs tasks that outlast the message that began them.
     pub fn new(outbox: Outbox, spawn: impl Fn(BoxFuture<'static, ()>) + 'static) -> Self {
-        Self::with_table(handlers::table(), outbox, Box::new(spawn))
+        Self::with_state(handlers::table(), State::default(), outbox, Box::new(spawn))
     }
 
     /// A session without a disk: of the files that are not open, it knows those that the client provides
@@ -67,11 +67,7 @@ impl Session {
     }
 
     /// A session that handles the messages of a table.
-    pub(crate) fn with_table(table: Table, outbox: Outbox, spawn: Spawn) -> Self {
-        Self::with_state(table, State::default(), outbox, spawn)
-    }
-
-    fn with_state(table: Table, state: State, outbox: Outbox, spawn: Spawn) -> Self {
+    pub(crate) fn with_state(table: Table, state: State, outbox: Outbox, spawn: Spawn) -> Self {
         let (table, state) = (Arc::new(table), Arc::new(Mutex::new(state)));
         let (service, socket) = LspService::new(|client| LifeCycle {
             server: Server::new(client, outbox.clone(), Arc::clone(&state)),
@@ -188,14 +184,7 @@ impl Session {
 /// The library writes `params: null` into requests that have no parameters, which JSON-RPC does not allow.
 fn without_null(request: Request) -> Request {
     let (method, id, params) = request.into_parts();
-    let mut repaired = Request::build(method);
-    if let Some(params) = params.filter(|params| !params.is_null()) {
-        repaired = repaired.params(params);
-    }
-    if let Some(id) = id {
-        repaired = repaired.id(id);
-    }
-    repaired.finish()
+    build(method, id, params.filter(|params| !params.is_null()))
 }
 
 /// The panic's message and location are on standard error already.

@@ -90,8 +90,10 @@ pub(crate) struct Site {
 
 /// A server that runs until it is dropped.
 pub(crate) struct WebServer {
-    address: String,
-    events: Sender,
+    /// The page's address, with its secret.
+    pub(crate) address: String,
+    /// Sends events to all pages.
+    pub(crate) events: Sender,
     _stop: oneshot::Sender<()>,
 }
 
@@ -146,16 +148,6 @@ impl WebServer {
             runtime.shutdown_background();
         })?;
         Ok(Self { address, events: Sender(events), _stop: stop })
-    }
-
-    /// The page's address, with its secret.
-    pub(crate) fn address(&self) -> &str {
-        &self.address
-    }
-
-    /// Sends events to all pages.
-    pub(crate) fn events(&self) -> Sender {
-        self.events.clone()
     }
 }
 

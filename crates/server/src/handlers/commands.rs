@@ -53,7 +53,7 @@ const COMMANDS: &[Command] = &[
         argument: "{uri, environment}",
         does: "runs the environment in the embedded simulator, draws the planned and the driven path",
         returns: "`{picture, replay, output, figures}`",
-        run: |server, params| run(server, params).boxed(),
+        run: |server, params| with_argument(server, params, runs::run).boxed(),
     },
     #[cfg(feature = "process")]
     Command {
@@ -61,7 +61,7 @@ const COMMANDS: &[Command] = &[
         argument: "{uri, environment}",
         does: "draws the planned path",
         returns: "`{picture, replay, output}`",
-        run: |server, params| run(server, params).boxed(),
+        run: |server, params| with_argument(server, params, runs::run).boxed(),
     },
     #[cfg(feature = "process")]
     Command {
@@ -77,7 +77,7 @@ const COMMANDS: &[Command] = &[
         argument: "{uri, environment, replace?}",
         does: "builds the environment's scene in a running CoppeliaSim; asks before it replaces what it built before",
         returns: "`{robots, obstacles, notes}`",
-        run: |server, params| push_scene(server, params).boxed(),
+        run: |server, params| with_argument(server, params, scenes::push).boxed(),
     },
     #[cfg(feature = "process")]
     Command {
@@ -85,7 +85,7 @@ const COMMANDS: &[Command] = &[
         argument: "{uri, environment}",
         does: "checks the scene of a running CoppeliaSim against the environment, shows what is wrong and what to do",
         returns: "`{findings}`",
-        run: |server, params| check_scene(server, params).boxed(),
+        run: |server, params| with_argument(server, params, scenes::check).boxed(),
     },
     #[cfg(feature = "process")]
     Command {
@@ -93,7 +93,7 @@ const COMMANDS: &[Command] = &[
         argument: "{uri, environment}",
         does: "removes what was built for the environment from a running CoppeliaSim",
         returns: "`{removed, main_script}`",
-        run: |server, params| remove_scene(server, params).boxed(),
+        run: |server, params| with_argument(server, params, scenes::remove).boxed(),
     },
     Command {
         name: hover::SHOW_KINEMATICS,
@@ -135,7 +135,7 @@ async fn generate_script(server: Server, params: ExecuteCommandParams) -> Result
             // A client that cannot ask has not said yes.
             let answer = server.client.send_request::<ShowMessageRequest>(question).await.ok().flatten();
             if !scripts::allows(answer.as_ref()) {
-                return Err(scripts::kept());
+                return Err(scripts::cancelled("the script is kept as it is"));
             }
             Changed::Replace
         }
@@ -178,10 +178,15 @@ async fn finish(runtime: Option<oneshot::Receiver<()>>) {
     }
 }
 
+/// Runs a command with its argument.
 #[cfg(feature = "process")]
-async fn run(server: Server, params: ExecuteCommandParams) -> Result<Option<LSPAny>> {
-    let which = argument(&params)?;
-    runs::run(server, params, which).await
+async fn with_argument<T: DeserializeOwned, F: Future<Output = Result<Option<LSPAny>>>>(
+    server: Server,
+    params: ExecuteCommandParams,
+    run: fn(Server, ExecuteCommandParams, T) -> F,
+) -> Result<Option<LSPAny>> {
+    let argument = argument(&params)?;
+    run(server, params, argument).await
 }
 
 /// The argument may be missing: not all editors can send one.
@@ -189,24 +194,6 @@ async fn run(server: Server, params: ExecuteCommandParams) -> Result<Option<LSPA
 async fn open_preview(server: Server, params: ExecuteCommandParams) -> Result<Option<LSPAny>> {
     let shown = if params.arguments.is_empty() { preview::Shown::default() } else { argument(&params)? };
     preview::open(server, shown).await
-}
-
-#[cfg(feature = "process")]
-async fn push_scene(server: Server, params: ExecuteCommandParams) -> Result<Option<LSPAny>> {
-    let push = argument(&params)?;
-    scenes::push(server, params, push).await
-}
-
-#[cfg(feature = "process")]
-async fn check_scene(server: Server, params: ExecuteCommandParams) -> Result<Option<LSPAny>> {
-    let which = argument(&params)?;
-    scenes::check(server, params, which).await
-}
-
-#[cfg(feature = "process")]
-async fn remove_scene(server: Server, params: ExecuteCommandParams) -> Result<Option<LSPAny>> {
-    let which = argument(&params)?;
-    scenes::remove(server, params, which).await
 }
 
 fn show_kinematics(server: &Server, params: &ExecuteCommandParams) -> Result<Option<LSPAny>> {

@@ -1,7 +1,7 @@
 //! `pydslrep/drivenPath`, a request of our own: where the robots were in the latest run of an environment, and
 //! `pydslrep/drivenPathChanged`, the notification of another run. Both are described in `docs/protocol.md`.
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::Arc;
 
 use rustc_hash::FxHashMap;
 use serde_json::Value;
@@ -18,6 +18,7 @@ use crate::message::Outbox;
 use crate::page::Audience;
 #[cfg(feature = "process")]
 use crate::page::Pages;
+use crate::shared::Shared;
 
 /// The request.
 pub(crate) enum DrivenPath {}
@@ -40,7 +41,7 @@ impl Notification for DrivenPathChanged {
 
 /// The latest path of each environment that was run in this session; clones share them.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct DrivenPaths(Arc<Mutex<Driven>>);
+pub(crate) struct DrivenPaths(Arc<Shared<Driven>>);
 
 #[derive(Debug, Default)]
 struct Driven {
@@ -54,7 +55,7 @@ impl DrivenPaths {
     /// The path of the latest run of an environment; `None` where there was none. From now on its audience is
     /// notified of another.
     pub(crate) fn watch(&self, which: &ChosenEnvironment, audience: Audience) -> Option<Value> {
-        let (mut driven, watched) = (self.lock(), (audience, which.clone()));
+        let (mut driven, watched) = (self.0.lock(), (audience, which.clone()));
         if !driven.watched.contains(&watched) {
             driven.watched.push(watched);
         }
@@ -78,7 +79,7 @@ impl DrivenPaths {
         }
         let path =
             serde_json::json!({ "environment": which.environment, "robots": robots, "planned": planned });
-        let mut driven = self.lock();
+        let mut driven = self.0.lock();
         driven.paths.insert(place(which), path);
         driven.watched.retain(|(audience, watched)| {
             let is_other = place(watched) != place(which);
@@ -89,10 +90,6 @@ impl DrivenPaths {
             }
             is_other
         });
-    }
-
-    fn lock(&self) -> MutexGuard<'_, Driven> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 

@@ -44,12 +44,8 @@ pub(crate) fn on_type(view: &View, params: &DocumentOnTypeFormattingParams) -> O
         "\n" => ide::format_after_line_break(view.database(), place.position()),
         _ => Vec::new(),
     };
-    Some(
-        edits
-            .into_iter()
-            .map(|edit| TextEdit::new(view.range(place.document, edit.span), edit.text))
-            .collect(),
-    )
+    let edits = edits.into_iter().map(|edit| TextEdit::new(view.range(place.document, edit.span), edit.text));
+    Some(edits.collect())
 }
 
 fn convert(snapshot: &Snapshot, encoding: Encoding, edits: Vec<syntax::TextEdit>) -> Vec<TextEdit> {

@@ -6,7 +6,7 @@ use serde::Deserialize;
 use tower_lsp::jsonrpc::Result;
 use tower_lsp::ls_types::{Hover, HoverContents, HoverParams, LSPAny, MarkedString, MarkupContent, Uri};
 
-use crate::handlers::scripts::failure;
+use crate::handlers::scripts::{failure, opened};
 use crate::view::View;
 
 /// Returns the kinematics of a robot as Markdown; its argument is a [`RobotOf`].
@@ -23,8 +23,7 @@ pub(crate) struct RobotOf {
 
 /// The command [`SHOW_KINEMATICS`]: shows the text of a hover over the robot.
 pub(crate) fn show_kinematics(view: &View, RobotOf { uri, robot }: &RobotOf) -> Result<Option<LSPAny>> {
-    let (_, file) =
-        view.analysed(uri).ok_or_else(|| failure(format!("`{}` is not open in the editor", uri.as_str())))?;
+    let (_, file) = opened(view, uri)?;
     let declared = view.database().declarations(file, EntityKind::Robot, &robot.as_str().into());
     let at = declared.first().map(|span| ide::FilePosition { file, offset: span.start });
     let found = at.and_then(|position| ide::hover(view.database(), position));

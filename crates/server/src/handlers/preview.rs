@@ -10,10 +10,9 @@ use pydslrep_workspace::DocumentKind;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use tower_lsp::jsonrpc::{Error, Id, Result};
-use tower_lsp::ls_types::notification::ShowMessage;
 use tower_lsp::ls_types::request::{Request, ShowDocument};
 use tower_lsp::ls_types::{
-    LSPAny, Location, MessageType, Position, ShowDocumentParams, ShowMessageParams, TextDocumentIdentifier,
+    LSPAny, Location, MessageType, Position, ShowDocumentParams, TextDocumentIdentifier,
     TextDocumentPositionParams, Uri,
 };
 
@@ -98,10 +97,7 @@ pub(crate) async fn open(server: Server, shown: Shown) -> Result<Option<LSPAny>>
         _ => false,
     };
     if !is_shown {
-        let message = format!("Path preview: {address}");
-        server
-            .outbox
-            .send_notification::<ShowMessage>(&ShowMessageParams { typ: MessageType::INFO, message });
+        server.outbox.tell(MessageType::INFO, format!("Path preview: {address}"));
     }
     Ok(Some(json!({ "address": address })))
 }
@@ -117,16 +113,15 @@ pub(crate) fn start(server: &Server, shown: Shown, port: u16) -> Result<String> 
     let web = match &mut *web {
         Some(web) => web,
         none => {
-            let site = site(server.clone());
-            let started = WebServer::start(port, site)
+            let started = WebServer::start(port, site(server.clone()))
                 .map_err(|error| failure(format!("cannot start the preview: {error}")))?;
-            let events = started.events();
+            let events = started.events.clone();
             server.state().pages.connect(Box::new(move |event| events.send(event)));
             none.insert(started)
         }
     };
     server.state().pages.cursor_is(cursor);
-    Ok(web.address().to_owned())
+    Ok(web.address.clone())
 }
 
 /// The cursor to begin with.

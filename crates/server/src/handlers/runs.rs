@@ -23,11 +23,11 @@ use pydslrep_output::TemporaryFolder;
 use pydslrep_scene::ENDING;
 use pydslrep_script::{VREP_CLIENT_PARTS, VREP_CLIENTS};
 use pydslrep_workspace::path_of;
-use tower_lsp::jsonrpc::{Error, ErrorCode, Result};
+use tower_lsp::jsonrpc::{Error, Result};
 
 use crate::children::{ChildEvent, Children, Running};
 use crate::chosen::ChosenEnvironment;
-use crate::handlers::scripts::{blocked, environment, failure};
+use crate::handlers::scripts::{blocked, cancelled, environment, failure, opened};
 use crate::view::View;
 
 /// Runs an environment.
@@ -86,8 +86,7 @@ fn copy(view: &View, which: &ChosenEnvironment) -> Result<ProgramCopy> {
 
 /// The open program and its imports, with the same relative paths.
 fn write_programs(view: &View, which: &ChosenEnvironment, folder: &Path) -> Result<PathBuf> {
-    let unopened = || failure(format!("`{}` is not open in the editor", which.uri.as_str()));
-    let (document, file) = view.analysed(&which.uri).ok_or_else(unopened)?;
+    let (document, file) = opened(view, &which.uri)?;
     let database = view.database();
     let own = database.path(file);
     let mut needed = vec![file];
@@ -223,11 +222,6 @@ pub(crate) fn ended_badly(code: Option<i32>, stderr: &[String]) -> Error {
         return failure("pydslrep exited without output".to_owned());
     }
     failure(stderr[first..].join("\n"))
-}
-
-/// The error for a request that the user does not want any more.
-fn cancelled(message: &'static str) -> Error {
-    Error { code: ErrorCode::RequestCancelled, message: message.into(), data: None }
 }
 
 #[cfg(test)]

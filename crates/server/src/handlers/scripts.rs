@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use futures::channel::oneshot;
 use pydslrep_analysis::environment::Environment;
-use pydslrep_analysis::{Blocked, EntityId};
+use pydslrep_analysis::{Blocked, EntityId, FileId};
 use pydslrep_output::{
     Changed, Kind, WriteError, check_inside, check_script, write_script as write_script_file,
 };
@@ -16,17 +16,15 @@ use pydslrep_syntax::EntityKind;
 use pydslrep_workspace::{FileSystem, MemoryFiles, ReadError};
 use serde::{Deserialize, Serialize};
 use tower_lsp::jsonrpc::{self, Error, ErrorCode};
-use tower_lsp::ls_types::notification::ShowMessage;
 use tower_lsp::ls_types::request::Request;
 use tower_lsp::ls_types::{
-    CreateFile, CreateFileOptions, DocumentChangeOperation, DocumentChanges, Location, MessageActionItem,
-    MessageType, OneOf, OptionalVersionedTextDocumentIdentifier, Position, Range, ResourceOp,
-    ShowDocumentParams, ShowMessageParams, ShowMessageRequestParams, TextDocumentEdit, TextEdit, Uri,
-    WorkspaceEdit,
+    CreateFileOptions, Location, MessageActionItem, MessageType, Position, Range, ShowDocumentParams,
+    ShowMessageRequestParams, TextEdit, Uri, WorkspaceEdit,
 };
 
 use crate::chosen::ChosenEnvironment;
 use crate::documents::{Document, key, uri_of};
+use crate::edits;
 use crate::message::Outbox;
 use crate::state::State;
 use crate::view::View;
@@ -136,9 +134,7 @@ pub(crate) fn generate(view: &View, which: &ChosenEnvironment) -> jsonrpc::Resul
 ///
 /// If the document is not open, or has no such environment.
 pub(crate) fn environment(view: &View, which: &ChosenEnvironment) -> jsonrpc::Result<EntityId> {
-    let (_, file) = view
-        .analysed(&which.uri)
-        .ok_or_else(|| failure(format!("`{}` is not open in the editor", which.uri.as_str())))?;
+    let (_, file) = opened(view, &which.uri)?;
     let name = which.environment.as_str().into();
     let declared = view.database().definitions(file, EntityKind::Environment, &name);
     let first = declared.first().copied();
@@ -237,18 +233,10 @@ fn address(program: &Uri, file_name: &str) -> Option<Uri> {
 pub(crate) fn edit(script: &Script) -> WorkspaceEdit {
     let everything = Range::new(Position::new(0, 0), Position::new(PAST_THE_END, 0));
     let replace = TextEdit::new(everything, script.text.clone());
-    let text_document = OptionalVersionedTextDocumentIdentifier { uri: script.uri.clone(), version: None };
-    let edit = TextDocumentEdit { text_document, edits: vec![OneOf::Left(replace)] };
-    let mut operations = vec![DocumentChangeOperation::Edit(edit)];
-    if !script.exists() {
-        // Where there is no disk, a file may be there that the client has not provided.
-        let overwrite = script.provided.is_none().then_some(true);
-        let options = CreateFileOptions { overwrite, ignore_if_exists: None };
-        let create = CreateFile { uri: script.uri.clone(), options: Some(options), annotation_id: None };
-        operations.insert(0, DocumentChangeOperation::Op(ResourceOp::Create(create)));
-    }
-    let document_changes = Some(DocumentChanges::Operations(operations));
-    WorkspaceEdit { document_changes, ..WorkspaceEdit::default() }
+    // Where there is no disk, a file may be there that the client has not provided.
+    let overwrite = script.provided.is_none().then_some(true);
+    let create = CreateFileOptions { overwrite, ignore_if_exists: None };
+    edits::of_file(script.uri.clone(), replace, (!script.exists()).then_some(create))
 }
 
 /// The command `pydslrep.generateScript`, for clients that cannot create files: writes the script and begins to write the
@@ -266,7 +254,7 @@ pub(crate) fn write_script(
     let script = generate(&state.view, which)?;
     let path = path(&script.uri).ok_or_else(unsaved)?;
     script.write(&path, changed).map_err(failure)?;
-    tell(outbox, MessageType::INFO, format!("Script written: {}", script.file_name()));
+    outbox.tell(MessageType::INFO, format!("Script written: {}", script.file_name()));
     let runtime = script.runtime_folder().map(|folder| state.runtimes.write(folder, outbox));
     Ok((script.uri, runtime))
 }
@@ -308,7 +296,7 @@ pub(crate) fn save(state: &mut State, program: &Uri, outbox: &Outbox) {
             Err(reason) => (MessageType::WARNING, reason),
         };
         if state.reported.insert(message.clone()) {
-            tell(outbox, kind, message);
+            outbox.tell(kind, message);
         }
     }
     for folder in folders {
@@ -342,12 +330,17 @@ pub(crate) fn question(
 ) -> jsonrpc::Result<Option<ShowMessageRequestParams>> {
     let script = generate(view, which)?;
     let is_changed = matches!(script.obstacle(), Some(WriteError::Changed(_)));
-    let answer = |title: &str| MessageActionItem { title: title.to_owned(), properties: HashMap::new() };
-    Ok(is_changed.then(|| ShowMessageRequestParams {
-        typ: MessageType::WARNING,
-        message: format!("{} was changed since it was generated. Replace your changes?", script.file_name()),
-        actions: Some(vec![answer(REPLACE), answer(KEEP)]),
+    Ok(is_changed.then(|| {
+        let name = script.file_name();
+        choice(format!("{name} was changed since it was generated. Replace your changes?"), [REPLACE, KEEP])
     }))
+}
+
+/// A question to the user with two answers.
+pub(crate) fn choice(message: String, answers: [&str; 2]) -> ShowMessageRequestParams {
+    let answer = |title: &str| MessageActionItem { title: title.to_owned(), properties: HashMap::new() };
+    let actions = Some(answers.map(answer).to_vec());
+    ShowMessageRequestParams { typ: MessageType::WARNING, message, actions }
 }
 
 /// Returns whether an answer to [`question`] allows it.
@@ -355,19 +348,24 @@ pub(crate) fn allows(answer: Option<&MessageActionItem>) -> bool {
     answer.is_some_and(|answer| answer.title == REPLACE)
 }
 
-/// The error for a script that the user keeps.
-pub(crate) fn kept() -> Error {
-    Error { code: ErrorCode::RequestCancelled, message: "the script is kept as it is".into(), data: None }
-}
-
-/// Shows a message.
-pub(crate) fn tell(outbox: &Outbox, typ: MessageType, message: String) {
-    outbox.send_notification::<ShowMessage>(&ShowMessageParams { typ, message });
+/// The error for a request that the user does not want any more.
+pub(crate) fn cancelled(message: &'static str) -> Error {
+    Error { code: ErrorCode::RequestCancelled, message: message.into(), data: None }
 }
 
 /// The request to show a script next to its program.
 pub(crate) fn show(uri: Uri) -> ShowDocumentParams {
     ShowDocumentParams { uri, external: Some(false), take_focus: Some(false), selection: None }
+}
+
+/// A program of the client.
+///
+/// # Errors
+///
+/// If there is none.
+pub(crate) fn opened<'a>(view: &'a View, program: &Uri) -> jsonrpc::Result<(Document<'a>, FileId)> {
+    let unopened = || failure(format!("`{}` is not open in the editor", program.as_str()));
+    view.analysed(program).ok_or_else(unopened)
 }
 
 /// The error for a request that is valid but cannot be done.

@@ -2,8 +2,7 @@
 
 use pydslrep_config::SECTION;
 use serde_json::Value;
-use tower_lsp::ls_types::notification::ShowMessage;
-use tower_lsp::ls_types::{ConfigurationItem, MessageType, ShowMessageParams};
+use tower_lsp::ls_types::{ConfigurationItem, MessageType};
 
 use crate::message::Outbox;
 use crate::state::State;
@@ -18,6 +17,6 @@ pub(crate) fn set(state: &mut State, settings: &Value, outbox: &Outbox) {
     for problem in state.set_client_settings(settings) {
         let help = problem.help.map(|help| format!(" ({help})")).unwrap_or_default();
         let message = format!("settings of PyDSLRep: {}{help}", problem.message);
-        outbox.send_notification::<ShowMessage>(&ShowMessageParams { typ: MessageType::WARNING, message });
+        outbox.tell(MessageType::WARNING, message);
     }
 }

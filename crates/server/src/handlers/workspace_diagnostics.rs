@@ -27,21 +27,21 @@ pub(crate) async fn pull_workspace(
         let change = reader.diagnostics_change();
         let mut items = Vec::new();
         let keys: Vec<String> = {
-            let view = reader.view();
+            let view = &reader.state().view;
             let keys = view.workspace.documents().map(|document| document.key.as_str());
             Workspace::in_order(keys).into_iter().map(str::to_owned).collect()
         };
         for key in keys {
             let length = {
-                let view = reader.view();
+                let view = &reader.state().view;
                 let Some(document) = view.document_at(&key) else { continue };
-                items.extend(changed_report(&view, document, known.get(&key).copied()));
+                items.extend(changed_report(view, document, known.get(&key).copied()));
                 document.text.len_bytes()
             };
             reader.has_read(length).await;
         }
         {
-            let view = reader.view();
+            let view = &reader.state().view;
             let gone = params.previous_result_ids.iter().filter(|known| view.document(&known.uri).is_none());
             items.extend(gone.map(|known| full_report(known.uri.clone(), None, None, Vec::new())));
         }

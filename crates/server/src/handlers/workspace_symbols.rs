@@ -18,15 +18,15 @@ pub(crate) async fn workspace_symbols(
 ) -> Result<Option<WorkspaceSymbolResponse>> {
     let mut reader = Reader::new(server);
     let mut search = ide::SymbolSearch::new(&params.query);
-    let files: Vec<FileId> = reader.view().database().files().collect();
+    let files: Vec<FileId> = reader.state().view.database().files().collect();
     for file in files {
-        search.add(reader.view().database(), file);
-        let length = reader.view().database().text(file).map_or(0, Rope::len_bytes);
+        search.add(reader.state().view.database(), file);
+        let length = reader.state().view.database().text(file).map_or(0, Rope::len_bytes);
         reader.has_read(length).await;
     }
-    let view = reader.view();
+    let view = &reader.state().view;
     let found = search.finish(view.database()).into_iter();
-    Ok(Some(WorkspaceSymbolResponse::Flat(found.filter_map(|symbol| convert(&view, symbol)).collect())))
+    Ok(Some(WorkspaceSymbolResponse::Flat(found.filter_map(|symbol| convert(view, symbol)).collect())))
 }
 
 #[expect(deprecated, reason = "the field must be filled even where it is not used")]

@@ -6,7 +6,7 @@
 
 use std::collections::VecDeque;
 use std::io::{self, Read};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Condvar, PoisonError};
 use std::thread;
 
 use super::{contains, handle, is_end, report_end};
@@ -14,6 +14,7 @@ use crate::frame::{Frame, FrameReader};
 use crate::load::Load;
 use crate::pending::PendingRequests;
 use crate::session::{Ending, Session};
+use crate::shared::Shared;
 
 /// The most bytes of messages that are kept; then the client has to wait until it has read something.
 const MAX_BYTES: usize = 64 << 20;
@@ -24,7 +25,7 @@ type Input = io::Result<Option<Frame>>;
 /// Messages that were read and not handled yet.
 #[derive(Default)]
 struct Backlog {
-    state: Mutex<State>,
+    state: Shared<State>,
     has_changed: Condvar,
 }
 
@@ -62,10 +63,6 @@ pub(super) fn read_all(
 }
 
 impl Backlog {
-    fn lock(&self) -> MutexGuard<'_, State> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
     /// Reads to the end of the input.
     fn fill(&self, mut frames: FrameReader<impl Read>, pending: &PendingRequests, load: &Load) {
         loop {
@@ -93,7 +90,7 @@ impl Backlog {
 
     /// Adds a message as soon as there is room for it.
     fn add(&self, input: Input, bytes: usize) {
-        let mut state = self.lock();
+        let mut state = self.state.lock();
         while state.bytes > MAX_BYTES {
             state = self.has_changed.wait(state).unwrap_or_else(PoisonError::into_inner);
         }
@@ -105,11 +102,11 @@ impl Backlog {
 
     /// The next message; when there is none yet, the session publishes diagnostics first.
     fn next(&self, session: &Session) -> Input {
-        let mut state = self.lock();
+        let mut state = self.state.lock();
         if state.inputs.is_empty() {
             drop(state);
             session.flush_diagnostics();
-            state = self.lock();
+            state = self.state.lock();
         }
         loop {
             if let Some(input) = state.inputs.pop_front() {

@@ -90,9 +90,14 @@ fn table() -> Table {
 
 fn serve_in_test(input: impl Read + Send + 'static, output: impl Write + Send + 'static) -> Ending {
     let start = |outbox: Outbox, runtime: runtime::Handle| {
-        Session::with_table(table(), outbox, Box::new(move |unfinished| drop(runtime.spawn(unfinished))))
+        Session::with_state(
+            table(),
+            State::default(),
+            outbox,
+            Box::new(move |unfinished| drop(runtime.spawn(unfinished))),
+        )
     };
-    serve_with(input, output, start).unwrap()
+    serve_with(input, output, &Load::new(MAX_UNWRITTEN), start).unwrap()
 }
 
 /// A client that writes all of its requests before it reads any answer.
@@ -167,8 +172,13 @@ fn check_hurried_client(wheels: usize) {
     let input = Requests(Arc::clone(&client), Cursor::new(requests), REQUESTS, Cursor::new(goodbye()));
     let load = Load::new(LIMIT);
     let output = Answers(Arc::clone(&client), Vec::new());
-    let ending = serve_with_load(input, output, &load, |outbox, runtime| {
-        Session::with_table(table(), outbox, Box::new(move |unfinished| drop(runtime.spawn(unfinished))))
+    let ending = serve_with(input, output, &load, |outbox, runtime| {
+        Session::with_state(
+            table(),
+            State::default(),
+            outbox,
+            Box::new(move |unfinished| drop(runtime.spawn(unfinished))),
+        )
     });
     assert_eq!(ending.unwrap(), Ending::Orderly);
     assert_eq!(client.0.lock().unwrap().answers, REQUESTS, "all are answered in the end");
@@ -262,7 +272,7 @@ fn what_is_cancelled_ends_while_the_client_does_not_read() {
         during.set(Turn::Reading);
     });
     let (late, ended) = (Late(Arc::clone(&turns), output.clone()), Arc::clone(&turns));
-    let ending = serve_with_load(input, late, &Load::new(200_000), |outbox, runtime| {
+    let ending = serve_with(input, late, &Load::new(200_000), |outbox, runtime| {
         let run = move |unfinished| {
             let ended = Arc::clone(&ended);
             drop(runtime.spawn(async move {
@@ -270,7 +280,7 @@ fn what_is_cancelled_ends_while_the_client_does_not_read() {
                 ended.set(Turn::Ended);
             }));
         };
-        Session::with_table(table(), outbox, Box::new(run))
+        Session::with_state(table(), State::default(), outbox, Box::new(run))
     });
     assert_eq!(ending.unwrap(), Ending::Orderly);
     assert!(*has_ended.lock().unwrap(), "the request goes on although it was cancelled");

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use futures::StreamExt;
 use futures::channel::mpsc::UnboundedReceiver;
 use pydslrep_trace::{RunEvent, RunFailure};
-use tower_lsp::ls_types::{ProgressToken, WorkDoneProgressCreateParams, request};
+use tower_lsp::ls_types::ProgressToken;
 
 use crate::children::{ChildEvent, KillOnDrop, Running};
 use crate::server::Server;
@@ -81,7 +81,10 @@ pub(super) async fn follow(
     (running, mut events): (Running, UnboundedReceiver<ChildEvent>),
 ) -> Ended {
     let _kill = KillOnDrop(running.clone());
-    let progress = match progress_token(server, asked).await {
+    let name = format!("pydslrep run {}", server.children().count());
+    // The client's, otherwise one of ours.
+    let token = if asked.is_some() { asked } else { server.progress_token(name).await };
+    let progress = match token {
         Some(token) => {
             server.children().name(&running, &token);
             Some(server.client.progress(token, title).with_cancel_button().begin().await)
@@ -115,15 +118,4 @@ pub(super) async fn follow(
         progress.finish().await;
     }
     Ended { stderr: stderr.into(), ..ended }
-}
-
-/// The token of a child's progress: the client's, otherwise one of ours; `None` where the client shows none.
-async fn progress_token(server: &Server, asked: Option<ProgressToken>) -> Option<ProgressToken> {
-    if asked.is_some() || !server.state().view.client.progress {
-        return asked;
-    }
-    let token = ProgressToken::String(format!("pydslrep run {}", server.children().count()));
-    let params = WorkDoneProgressCreateParams { token: token.clone() };
-    server.client.send_request::<request::WorkDoneProgressCreate>(params).await.ok()?;
-    Some(token)
 }

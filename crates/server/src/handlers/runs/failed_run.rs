@@ -4,9 +4,9 @@ use pydslrep_ide::{NumberedAction, PlannedCall, action_place};
 use pydslrep_trace::{Call, FailureClass, RunFailure};
 use tower_lsp::jsonrpc::Error;
 
-use super::{ERROR, cancelled, ended_badly};
+use super::{ERROR, ended_badly};
 use crate::chosen::ChosenEnvironment;
-use crate::handlers::scripts::{Cause, environment, failure, with_cause};
+use crate::handlers::scripts::{Cause, cancelled, environment, failure, with_cause};
 use crate::view::View;
 
 /// The error of a run, with the place of the action that failed if that is still there. `stderr` has the lines that the

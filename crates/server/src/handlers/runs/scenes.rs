@@ -1,6 +1,5 @@
 //! The commands on the scene of a running `CoppeliaSim`: it is built from a program, checked against it, and removed.
 
-use std::collections::HashMap;
 use std::process::Command;
 
 use serde::Deserialize;
@@ -8,13 +7,13 @@ use serde_json::Value;
 use tower_lsp::jsonrpc::Result;
 use tower_lsp::ls_types::request::ShowMessageRequest;
 use tower_lsp::ls_types::{
-    ExecuteCommandParams, LSPAny, MessageActionItem, MessageType, ProgressToken, ShowMessageRequestParams,
+    ExecuteCommandParams, LSPAny, MessageType, ProgressToken, ShowMessageRequestParams,
 };
 
 use super::child::{Ended, Tells, follow};
-use super::{INTERRUPTED, cancelled, copy, ended_badly, start};
+use super::{INTERRUPTED, copy, ended_badly, start};
 use crate::chosen::ChosenEnvironment;
-use crate::handlers::scripts::{failure, tell};
+use crate::handlers::scripts::{cancelled, choice, failure};
 use crate::server::Server;
 
 /// Builds the scene of an environment.
@@ -108,7 +107,7 @@ pub(crate) async fn push(server: Server, params: ExecuteCommandParams, push: Pus
                 let (robots, obstacles) = (count(robots, "robot"), count(obstacles, "obstacle"));
                 let built = format!("Built {robots} and {obstacles} in CoppeliaSim at {place}");
                 let message = [built].into_iter().chain(notes).collect::<Vec<_>>().join("; ");
-                tell(&server.outbox, MessageType::INFO, message);
+                server.outbox.tell(MessageType::INFO, message);
                 return Ok(serde_json::from_str(&ended.printed).ok());
             }
             refused => return Err(unanswered(refused.ok(), &ended)),
@@ -135,7 +134,7 @@ pub(crate) async fn remove(
             let removed = count(removed, "object");
             let script = if main_script { " and the main script" } else { "" };
             let message = format!("Removed {removed}{script} from CoppeliaSim at {place}");
-            tell(&server.outbox, MessageType::INFO, message);
+            server.outbox.tell(MessageType::INFO, message);
             Ok(serde_json::from_str(&ended.printed).ok())
         }
         refused => Err(unanswered(refused.ok(), &ended)),
@@ -162,7 +161,7 @@ pub(crate) async fn check(
         return Err(unanswered::<Value>(None, &ended));
     };
     let (kind, message) = report(&findings, &place);
-    tell(&server.outbox, kind, message);
+    server.outbox.tell(kind, message);
     let findings: Value = serde_json::from_str(&ended.printed).unwrap_or_default();
     Ok(Some(serde_json::json!({ "findings": findings })))
 }
@@ -209,12 +208,7 @@ impl Child<'_> {
 
 /// Asks whether to replace an earlier build.
 fn question(place: &str, error: &str) -> ShowMessageRequestParams {
-    let answer = |title: &str| MessageActionItem { title: title.to_owned(), properties: HashMap::new() };
-    ShowMessageRequestParams {
-        typ: MessageType::WARNING,
-        message: format!("CoppeliaSim at {place}: {error}. Replace them?"),
-        actions: Some(vec![answer(REPLACE), answer(KEEP)]),
-    }
+    choice(format!("CoppeliaSim at {place}: {error}. Replace them?"), [REPLACE, KEEP])
 }
 
 /// The error where there is no answer.
