@@ -37,6 +37,7 @@ test("a scene has colours and actions", async () => {
 });
 
 test("F5 in a scene runs its environment", async () => {
+  await stage.keyOf("PyDSLRep: Run in Simulator", "F5");
   await stage.line("start =").first().click();
   await stage.page.keyboard.press("F5");
   const frame = await stage.webview("main.preview");

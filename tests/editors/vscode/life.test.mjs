@@ -50,6 +50,7 @@ test("stopping a run shows no message, a restart of the server during a run does
     const running = stage.toasts.filter({ hasText: "Running rooms" });
     await stage.page.locator(".view-line").first().click();
     await until("the server runs", async () => /running/.test(await status(stage)));
+    await stage.keyOf("PyDSLRep: Run in Simulator", "F5");
     await stage.page.keyboard.press("F5");
     await running.waitFor();
     await stage.call("PyDSLRep: Stop Run");

@@ -22,6 +22,7 @@ after(() => stage?.close());
 const drawCount = () => frame.locator("main.preview").getAttribute("data-drawn").then(Number);
 
 test("the preview opens next to the program by its keys", async () => {
+  await stage.keyOf("PyDSLRep: Show Path Preview", "Ctrl+K");
   await stage.line("parallel movement cross_1").first().click();
   await stage.page.keyboard.press("Control+K");
   await stage.page.keyboard.press("v");

@@ -268,6 +268,25 @@ export class Stage {
     await this.page.keyboard.press("Enter");
   }
 
+  /** Waits until a key means a command: an editor that has just started may show what extensions offer before it knows their keys. */
+  async keyOf(title, key) {
+    const input = this.page.locator(".quick-input-widget input").first();
+    const row = this.page.locator(".quick-input-widget .monaco-list-row", { hasText: title.split(": ").at(-1) });
+    const bound = row.locator(".monaco-keybinding", { hasText: key }).first();
+    await until(`${key} is the key of ${title}`, async () => {
+      await this.page.keyboard.press("F1");
+      // The keys are those of the moment when the list opened.
+      const look = async () => {
+        await input.fill(`>${title}`, { timeout: 10_000 });
+        await bound.waitFor({ timeout: 3000 });
+      };
+      const isBound = await look().then(() => true, () => false);
+      await this.page.keyboard.press("Escape");
+      return isBound;
+    });
+    await input.waitFor({ state: "hidden" });
+  }
+
   /** Accepts the path that the open file dialog proposes, or another one. */
   async acceptFile(proposed, chosen = proposed) {
     const input = this.page.locator(".quick-input-widget input").first();
