@@ -378,14 +378,7 @@ impl EntityKind {
 
     /// Returns its name in messages, without an article.
     pub fn noun(self) -> &'static str {
-        match self {
-            Self::Wheel => "wheel",
-            Self::Sensor => "sensor",
-            Self::Ip => "ip",
-            Self::Robot => "robot",
-            Self::Movement => "movement",
-            Self::Environment => "environment",
-        }
+        self.a_noun().split_once(' ').map_or("", |(_, noun)| noun)
     }
 
     /// Returns its syntax, from end to end.

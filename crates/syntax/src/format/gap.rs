@@ -195,13 +195,8 @@ impl<'a> Gap<'a> {
 
 /// Line ends in a range; `\r\n` is one.
 fn line_ends(text: &str, from: u32, to: u32) -> usize {
-    let bytes = Span::new(from, to).text(text).as_bytes();
-    let mut count = 0;
-    for (index, byte) in bytes.iter().enumerate() {
-        let second_half = *byte == b'\n' && index > 0 && bytes[index - 1] == b'\r';
-        count += usize::from(matches!(byte, b'\n' | b'\r') && !second_half);
-    }
-    count
+    let text = Span::new(from, to).text(text);
+    text.matches(LINE_ENDS).count() - text.matches("\r\n").count()
 }
 
 /// The white space before a token that begins its line.

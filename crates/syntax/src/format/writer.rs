@@ -188,7 +188,8 @@ fn block_comment<'t>(written: &'t str, line_ending: &str, indent: Option<&str>) 
     if !written.contains(LINE_ENDS) {
         return Cow::Borrowed(written);
     }
-    let lines = lines(written);
+    let unified = written.replace("\r\n", "\n");
+    let lines: Vec<&str> = unified.split(LINE_ENDS).collect();
     let starred = lines.iter().skip(1).all(|line| line.trim_start_matches(BLANKS).starts_with('*'));
     let mut wanted = String::with_capacity(written.len());
     for (index, line) in lines.iter().enumerate() {
@@ -205,17 +206,4 @@ fn block_comment<'t>(written: &'t str, line_ending: &str, indent: Option<&str>) 
         }
     }
     Cow::Owned(wanted)
-}
-
-/// The lines of a text, whatever ends them.
-fn lines(text: &str) -> Vec<&str> {
-    let mut lines = Vec::new();
-    let mut rest = text;
-    while let Some(at) = rest.find(LINE_ENDS) {
-        lines.push(&rest[..at]);
-        let end = if rest[at..].starts_with("\r\n") { 2 } else { 1 };
-        rest = &rest[at + end..];
-    }
-    lines.push(rest);
-    lines
 }

@@ -21,7 +21,7 @@ pub(super) const ACTIONS: TokenSet = TokenSet::of(&TokenKind::ACTIONS);
 pub(super) const UNITS: TokenSet = TokenSet::of(&[TokenKind::Meters, TokenKind::Centimeters]);
 const AT: TokenSet = TokenSet::of(&[TokenKind::At]);
 const DIRECTIONS: TokenSet = TokenSet::of(&[TokenKind::Left, TokenKind::Right]);
-const WITH: TokenSet = TokenSet::of(&[TokenKind::With]);
+pub(super) const WITH: TokenSet = TokenSet::of(&[TokenKind::With]);
 const IN: TokenSet = TokenSet::of(&[TokenKind::In]);
 const IF: TokenSet = TokenSet::of(&[TokenKind::If]);
 

@@ -2,6 +2,7 @@
 
 use chumsky::prelude::{Parser, choice, just};
 
+use super::actions::WITH;
 use super::slot::{NUMBER, declared_name, keyword, nothing_more, number, slot, take};
 use super::{Rule, errors};
 use crate::ast::{Entity, Import, Ip, Sensor, SensorKeyword, Wheel};
@@ -29,7 +30,6 @@ pub(super) fn import<'s>() -> Rule<'s, Option<Entity>> {
 
 /// `wheel name with radius 4.5`
 pub(super) fn wheel<'s>() -> Rule<'s, Option<Entity>> {
-    const WITH: TokenSet = TokenSet::of(&[TokenKind::With]);
     const RADIUS: TokenSet = TokenSet::of(&[TokenKind::Radius]);
     let head = choice((just(TokenKind::Wheel), just(TokenKind::WheelH)))
         .map_with(|token, extra| (token, extra.span()));

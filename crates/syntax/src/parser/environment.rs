@@ -2,18 +2,16 @@
 
 use chumsky::prelude::{Parser, choice, end, just};
 
+use super::actions::{CLOSE, OPEN, WITH};
 use super::slot::{NAME, declared_name, keyword, nothing_more, one_in, reference, references};
 use super::{Extra, Input, Rule};
 use crate::ast::{Entity, Environment, IpClause, References};
 use crate::{EntityKind, TokenKind, TokenSet};
 
-const WITH: TokenSet = TokenSet::of(&[TokenKind::With]);
 const IP: TokenSet = TokenSet::of(&[TokenKind::Ip]);
 const HAS: TokenSet = TokenSet::of(&[TokenKind::Has]);
 const COMMA: TokenSet = TokenSet::of(&[TokenKind::Comma]);
-const OPEN: TokenSet = TokenSet::of(&[TokenKind::OpenBrace]);
 const BUT_OPEN: TokenSet = TokenSet::all_but(TokenKind::OpenBrace);
-const CLOSE: TokenSet = TokenSet::of(&[TokenKind::CloseBrace]);
 const ROBOTS: TokenSet = TokenSet::of(&[TokenKind::Robots]);
 const MOVES: TokenSet = TokenSet::of(&[TokenKind::Moves]);
 

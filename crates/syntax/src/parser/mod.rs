@@ -158,7 +158,7 @@ fn parse_batch(text: &str, bounds: &[(&[Token], Span)], emit: &mut impl FnMut(Sp
 fn tokens_to_parse(piece: &str, tokens: &[Token]) -> Option<Vec<Token>> {
     let is_misspelt = misspelt_beginning(piece, tokens).is_some();
     let deep = deep_blocks(tokens);
-    (is_misspelt || has_trivia(tokens) || !deep.is_empty()).then(|| {
+    (is_misspelt || tokens.iter().any(is_trivia) || !deep.is_empty()).then(|| {
         let mut significant = without_trivia(tokens);
         significant
             .retain(|(_, span)| !deep.iter().any(|block| block.start <= span.start && span.end <= block.end));
@@ -218,10 +218,6 @@ fn relocate(tokens: &[Token], start: u32) -> Box<[Token]> {
 
 fn is_trivia((token, _): &Token) -> bool {
     token.is_comment() || *token == TokenKind::Invalid
-}
-
-fn has_trivia(tokens: &[Token]) -> bool {
-    tokens.iter().any(is_trivia)
 }
 
 fn without_trivia(tokens: &[Token]) -> Vec<Token> {

@@ -7,10 +7,11 @@ use crate::{Expected, Found, Span, SyntaxError, SyntaxErrorKind, Token, TokenKin
 pub(super) fn join(mut errors: Vec<SyntaxError>, tokens: &[Token]) -> Vec<SyntaxError> {
     let mut index = 0;
     while index + 1 < errors.len() {
-        let joined = too_early(&errors[index], &errors[index + 1], tokens)
-            .or_else(|| too_late(&errors[index], &errors[index + 1], tokens))
-            .or_else(|| unbraced(&errors[index], &errors[index + 1], tokens))
-            .or_else(|| needless(&errors[index], &errors[index + 1]));
+        let (first, second) = (&errors[index], &errors[index + 1]);
+        let joined = misplaced(first, second, tokens)
+            .or_else(|| misplaced(second, first, tokens))
+            .or_else(|| unbraced(first, second, tokens))
+            .or_else(|| needless(first, second));
         if let Some(error) = joined {
             errors[index] = error;
             errors.remove(index + 1);
@@ -20,16 +21,7 @@ pub(super) fn join(mut errors: Vec<SyntaxError>, tokens: &[Token]) -> Vec<Syntax
     errors
 }
 
-/// `has wheels { a b }`
-fn too_early(first: &SyntaxError, second: &SyntaxError, tokens: &[Token]) -> Option<SyntaxError> {
-    misplaced(first, second, tokens)
-}
-
-/// `movement m r of { … }`
-fn too_late(first: &SyntaxError, second: &SyntaxError, tokens: &[Token]) -> Option<SyntaxError> {
-    misplaced(second, first, tokens)
-}
-
+/// Too early in `has wheels { a b }`, too late in `movement m r of { … }`.
 fn misplaced(stray: &SyntaxError, gap: &SyntaxError, tokens: &[Token]) -> Option<SyntaxError> {
     let SyntaxErrorKind::Unexpected { found: Found::Text(written), inside, .. } = &stray.kind else {
         return None;

@@ -2,6 +2,7 @@
 
 use chumsky::prelude::{Parser, choice, empty, just};
 
+use super::actions::{CLOSE, OPEN, WITH};
 use super::slot::{
     Fault, NAME, NUMBER, declared_name, keyword, nothing_more, one_in, references, slot, take,
 };
@@ -11,11 +12,8 @@ use crate::{EntityKind, Expected, Span, TokenKind, TokenSet};
 
 const TYPE: TokenSet = TokenSet::of(&[TokenKind::Type]);
 const DRIVES: TokenSet = TokenSet::of(&TokenKind::DRIVES);
-const WITH: TokenSet = TokenSet::of(&[TokenKind::With]);
 const PORT: TokenSet = TokenSet::of(&[TokenKind::Port]);
 const HAS: TokenSet = TokenSet::of(&[TokenKind::Has]);
-const OPEN: TokenSet = TokenSet::of(&[TokenKind::OpenBrace]);
-const CLOSE: TokenSet = TokenSet::of(&[TokenKind::CloseBrace]);
 const WHEELS: TokenSet = TokenSet::of(&[TokenKind::Wheels]);
 const SENSORS: TokenSet = TokenSet::of(&[TokenKind::Sensors]);
 

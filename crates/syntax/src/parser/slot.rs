@@ -191,18 +191,13 @@ pub(super) fn keyword<'s>(word: TokenKind, next: TokenSet, later: TokenSet) -> R
     let first = TokenSet::of(&[word]);
     let exact = just(word).map_with(|_, extra| extra.span());
     let misspelt = misspelling(word);
-    let replaced = any()
-        .filter(move |token: &TokenKind| {
-            let is_next = later.has(*token) && (!token.is_name() || ACTION_WORDS.has(*token));
-            !is_next && !CURSOR.has(*token)
-        })
-        .then_ignore(one_in(next).rewind())
-        .validate(|_, extra, emitter| emitter.emit(Fault::Skipped(extra.span())));
+    // What can follow is not replaced, unless it may be a name.
+    let replaced = ANY.without(later.without(NAME.without(ACTION_WORDS)));
     exact
         .map(Some)
         .recover_with(via_parser(skip_before(ANY, first).ignore_then(exact).map(Some)))
         .recover_with(via_parser(misspelt.map(Some)))
-        .recover_with(via_parser(replaced.to(None)))
+        .recover_with(via_parser(skip_before(replaced, next).to(None)))
         .recover_with(via_parser(skip_to(first.or(next).or(later)).ignore_then(exact.or_not())))
         .boxed()
 }
@@ -228,12 +223,8 @@ fn skip_to<'s>(until: TokenSet) -> impl Parser<'s, Input<'s>, (), Extra<'s>> + C
 
 /// Like [`skip_to`], but there must be something to pass over.
 pub(super) fn skip_some<'s>(until: TokenSet) -> impl Parser<'s, Input<'s>, (), Extra<'s>> + Clone {
-    let skipped = any()
-        .filter(move |token: &TokenKind| !until.or(CURSOR).has(*token))
-        .repeated()
-        .at_least(1)
-        .map_with(|(), extra: &mut MapExtra<'s, '_, Input<'s>, Extra<'s>>| extra.span());
-    skipped.validate(|span, _, emitter| emitter.emit(Fault::Skipped(span)))
+    let skipped = any().filter(move |token: &TokenKind| !until.or(CURSOR).has(*token));
+    reported(skipped.repeated().at_least(1))
 }
 
 /// Like [`skip_some`], but a list in braces is passed over whole: its closing brace closes nothing else.
@@ -256,11 +247,14 @@ fn skip_lists_and<'s>(
     let list =
         just(TokenKind::OpenBrace).ignore_then(inside).then_ignore(just(TokenKind::CloseBrace)).ignored();
     let other = any().filter(move |token: &TokenKind| !until.or(CURSOR).has(*token)).ignored();
-    let skipped = choice((list, other))
-        .repeated()
-        .at_least(1)
-        .map_with(|(), extra: &mut MapExtra<'s, '_, Input<'s>, Extra<'s>>| extra.span());
-    skipped.validate(|span, _, emitter| emitter.emit(Fault::Skipped(span)))
+    reported(choice((list, other)).repeated().at_least(1))
+}
+
+/// Passes over tokens, and says which.
+fn reported<'s, O>(
+    skipped: impl Parser<'s, Input<'s>, O, Extra<'s>> + Clone,
+) -> impl Parser<'s, Input<'s>, (), Extra<'s>> + Clone {
+    skipped.validate(|_, extra, emitter| emitter.emit(Fault::Skipped(extra.span())))
 }
 
 /// Passes over one token of `set` that is right before one of `next`.
@@ -268,9 +262,7 @@ pub(super) fn skip_before<'s>(
     set: TokenSet,
     next: TokenSet,
 ) -> impl Parser<'s, Input<'s>, (), Extra<'s>> + Clone {
-    one_in(set)
-        .then_ignore(one_in(next).rewind())
-        .validate(|_, extra, emitter| emitter.emit(Fault::Skipped(extra.span())))
+    reported(one_in(set).then_ignore(one_in(next).rewind()))
 }
 
 /// One of the tokens of a set.
