@@ -1,10 +1,18 @@
 //! What a program means where it leaves something out.
 
-use pydslrep_kinematics::Drive;
+use pydslrep_kinematics::{Drive, motion};
 use pydslrep_syntax::ast::{self, Name};
 
 /// The angle of a `turn` without one, in degrees.
 pub const DEFAULT_ANGLE: f64 = 90.0;
+
+/// Metres per second at the rim.
+pub(crate) fn speed(clause: Option<&ast::SpeedClause>) -> Option<f64> {
+    match clause {
+        Some(clause) => Some(clause.value.as_ref()?.value? / 100.0),
+        None => Some(motion::RIM_SPEED),
+    }
+}
 
 /// The type of a robot whose wheels are those that `wheel` finds by their names.
 pub(crate) fn drive<'a>(

@@ -60,9 +60,9 @@ pub struct Facts {
     imports: ImportIndex,
     /// Why what a file imports is not there, as far as this is known.
     absences: Absences,
-    /// The targets of scripts, where they are not the usual one. Kept while a file is closed.
+    /// The targets of scripts, as far as somebody chose them. Kept while a file is closed.
     targets: FxHashMap<FileId, Target>,
-    /// Which statements a file may have, where it is not the usual edition. Kept while a file is closed.
+    /// Which statements a file may have, as far as somebody chose its edition. Kept while a file is closed.
     editions: FxHashMap<FileId, Edition>,
     /// The texts of scenes, by the names of their environments. Kept while a file is closed.
     scenes: BTreeMap<FileId, BTreeMap<SmolStr, Arc<str>>>,
@@ -97,7 +97,7 @@ impl Facts {
 
     /// A part of a file's text; empty where it does not fit.
     pub fn slice(&self, file: FileId, span: Span) -> String {
-        self.get(file).map_or_else(String::new, |file| file.slice(span))
+        self.text(file).map_or_else(String::new, |text| span.slice(text))
     }
 
     /// The line ending a file uses.
@@ -117,47 +117,25 @@ impl Facts {
 
     /// The entities of a file in the order of the text; also what is before the first.
     pub fn entities(&self, file: FileId) -> impl Iterator<Item = EntityRef<'_>> {
-        let slots = self.get(file).map_or(&[][..], |file| &file.slots);
-        slots
-            .iter()
-            .scan(0, move |start, slot| {
-                let span = Span::new(*start, *start + slot.len);
-                *start = span.end;
-                Some((slot.entity, span))
-            })
-            .filter_map(|(id, span)| {
-                check_cancelled();
-                self.data(id).map(|data| EntityRef { id, file: data.file, span, parse: &data.parse })
-            })
+        self.entities_from(file, 0)
     }
 
     /// The entities of a file from the one that holds an offset on, in the order of the text.
     pub fn entities_from(&self, file: FileId, offset: u32) -> impl Iterator<Item = EntityRef<'_>> {
-        let (index, start) = self.slot_at(file, offset);
+        let (index, mut start) = self.slot_at(file, offset);
         let slots = self.slots(file).get(index..).unwrap_or_default();
-        let located = slots.iter().scan(start, move |start, slot| {
-            let span = Span::new(*start, *start + slot.len);
-            *start = span.end;
-            Some((slot.entity, span))
-        });
-        located.filter_map(|(id, span)| {
+        slots.iter().filter_map(move |slot| {
             check_cancelled();
-            self.data(id).map(|data| EntityRef { id, file: data.file, span, parse: &data.parse })
+            let entity = self.located_slot(*slot, start);
+            start += slot.len;
+            entity
         })
     }
 
     /// The entity that holds an offset: at a boundary the one after it, at the end of the text the last one.
     pub fn entity_at(&self, file: FileId, offset: u32) -> Option<EntityRef<'_>> {
-        let open = self.get(file)?;
-        let (index, start) = open.slots.at(offset);
-        let slot = open.slots.get(index)?;
-        let data = self.data(slot.entity)?;
-        Some(EntityRef {
-            id: slot.entity,
-            file,
-            span: Span::new(start, start + slot.len),
-            parse: &data.parse,
-        })
+        let (index, start) = self.slot_at(file, offset);
+        self.located_slot(*self.slots(file).get(index)?, start)
     }
 
     /// The entities next to an offset, at most so many on either side of the one that holds it, in the order of the text:
@@ -176,9 +154,13 @@ impl Facts {
         let open = self.get(data.file)?;
         let index = open.slots.partition_point(|slot| self.order(slot.entity) < data.order);
         let slot = open.slots.get(index).filter(|slot| slot.entity == id)?;
-        let start = open.slots.start_of(index);
-        let span = Span::new(start, start + slot.len);
-        Some(EntityRef { id, file: data.file, span, parse: &data.parse })
+        self.located_slot(*slot, open.slots.start_of(index))
+    }
+
+    /// The entity of a slot that starts there.
+    fn located_slot(&self, slot: EntitySlot, start: u32) -> Option<EntityRef<'_>> {
+        let EntityData { file, parse, .. } = self.data(slot.entity)?;
+        Some(EntityRef { id: slot.entity, file: *file, span: Span::new(start, start + slot.len), parse })
     }
 
     pub(crate) fn parse(&self, id: EntityId) -> Option<&Parse> {

@@ -136,7 +136,8 @@ pub fn plan_movement(
     movements: &[Movement],
 ) -> Result<kinematics::RobotPath, kinematics::ModelError> {
     let model = robot(driven).model()?;
-    let mut done: Vec<Vec<kinematics::Step>> = movements.iter().map(movement_steps).collect();
+    let mut done: Vec<Vec<kinematics::Step>> =
+        movements.iter().map(|movement| steps(&movement.actions)).collect();
     let steps = done.pop().unwrap_or_default();
     Ok(kinematics::plan_steps(&model, kinematics::Pose::default(), &steps, &done))
 }
@@ -158,7 +159,7 @@ fn summaries(model: &kinematics::Model, movements: &[Movement]) -> Vec<kinematic
     let mut summaries: Vec<kinematics::Summary> = Vec::with_capacity(movements.len());
     for movement in movements {
         let called = |index: usize| summaries.get(index).copied();
-        let summary = kinematics::Summary::of(model, &movement_steps(movement), &called);
+        let summary = kinematics::Summary::of(model, &steps(&movement.actions), &called);
         summaries.push(summary);
     }
     summaries
@@ -207,11 +208,7 @@ impl Driver {
 }
 
 fn movement(movement: &Movement) -> kinematics::Movement {
-    kinematics::Movement { robot: movement.robot, steps: movement_steps(movement) }
-}
-
-fn movement_steps(movement: &Movement) -> Vec<kinematics::Step> {
-    steps(&movement.actions)
+    kinematics::Movement { robot: movement.robot, steps: steps(&movement.actions) }
 }
 
 fn steps(actions: &[ResolvedAction]) -> Vec<kinematics::Step> {

@@ -2,13 +2,13 @@
 
 use std::hash::Hash;
 
-use pydslrep_kinematics::{Drive, motion};
+use pydslrep_kinematics::Drive;
 use pydslrep_scene::{Scene, SensorKind};
 use pydslrep_syntax::ast::{self, ActionKind as Statement, Entity, Name};
 use pydslrep_syntax::{EntityKind, Span, TokenKind};
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use crate::defaults::{DEFAULT_ANGLE, drive};
+use crate::defaults::{DEFAULT_ANGLE, drive, speed};
 use crate::environment::{
     Branch, COUNTS, Circle, Condition, Environment, Movement, Objects, ResolvedAction, ResolvedActionKind,
     Robot, Ros2, Sensor, Source, Wheel,
@@ -30,7 +30,21 @@ impl Facts {
 
     /// The entities that one is made of: itself, and all that it names, near or far.
     pub(crate) fn reached_from(&self, id: EntityId) -> Vec<EntityId> {
-        Parts { facts: self, file: self.file_of(id) }.reached_from(id)
+        let mut reached = vec![id];
+        let mut seen = FxHashSet::from_iter([id]);
+        let mut next = 0;
+        while let Some(&id) = reached.get(next) {
+            next += 1;
+            let (Some(file), Some(tree)) = (self.file_of(id), self.tree(id)) else { continue };
+            for (kind, name) in tree.references() {
+                if let Some(id) = self.resolve(file, kind, &name.text).entity()
+                    && seen.insert(id)
+                {
+                    reached.push(id);
+                }
+            }
+        }
+        reached
     }
 
     /// An environment with every name resolved; `None` where something that it needs is missing or broken.
@@ -40,7 +54,10 @@ impl Facts {
 
     /// The entities of the movements of an environment, in its order.
     pub(crate) fn movements_of(&self, id: EntityId) -> Option<Vec<EntityId>> {
-        Parts { facts: self, file: self.file_of(id) }.movements(id)
+        let Entity::Environment(tree) = self.tree(id)? else { return None };
+        let parts = Parts { facts: self, file: self.file_of(id) };
+        let listed = tree.movements.as_ref().map_or(&[][..], |list| &list.names);
+        parts.with_done(&without_repeats(&parts.resolve_all(id, EntityKind::Movement, listed)?))
     }
 
     /// The robots of an environment on an empty floor, whatever is wrong with its movements; `None` where a robot is
@@ -120,7 +137,17 @@ impl Facts {
 
     /// An action as the program writes it, on one line, without comments; its place counts from its entity's start.
     pub fn action_text(&self, entity: &EntityRef<'_>, action: Span) -> String {
-        Parts { facts: self, file: None }.folded_text(entity, action)
+        let tokens = &entity.parse.tokens;
+        let first = tokens.partition_point(|(_, place)| place.start < action.start);
+        let within = tokens.iter().skip(first).take_while(|(_, place)| place.end <= action.end);
+        let mut text = String::new();
+        for (token, place) in within.filter(|(token, _)| !token.is_comment()) {
+            if !text.is_empty() && *token != TokenKind::Comma {
+                text.push(' ');
+            }
+            text += &self.slice(entity.file, place.shifted(entity.span.start));
+        }
+        text
     }
 
     /// The same of an action without its blocks: [`ResolvedAction::text`].
@@ -147,33 +174,10 @@ struct Parts<'a> {
 }
 
 impl<'a> Parts<'a> {
-    fn reached_from(&self, id: EntityId) -> Vec<EntityId> {
-        let mut reached = vec![id];
-        let mut seen = FxHashSet::from_iter([id]);
-        let mut next = 0;
-        while let Some(&id) = reached.get(next) {
-            next += 1;
-            let (Some(file), Some(tree)) = (self.facts.file_of(id), self.facts.tree(id)) else {
-                continue;
-            };
-            for (kind, name) in tree.references() {
-                if let Some(id) = self.facts.resolve(file, kind, &name.text).entity()
-                    && seen.insert(id)
-                {
-                    reached.push(id);
-                }
-            }
-        }
-        reached
-    }
-
     fn environment(&self, id: EntityId) -> Option<Environment> {
         let Entity::Environment(tree) = self.facts.tree(id)? else { return None };
         let name = tree.name.as_ref()?;
-        let host = match &tree.ip {
-            Some(clause) => Some(self.host(id, clause.name.as_ref()?)?),
-            None => None,
-        };
+        let host = optional(tree.ip.as_ref(), |clause| self.host(id, clause.name.as_ref()?))?;
         let robot_ids = self.resolve_all(id, EntityKind::Robot, &tree.robots.as_ref()?.names)?;
         let robot_ids = without_repeats(&robot_ids);
         let listed = tree.movements.as_ref().map_or(&[][..], |list| &list.names);
@@ -195,13 +199,6 @@ impl<'a> Parts<'a> {
             source: self.source(&self.facts.entity(id)?, 0)?,
             robots,
         })
-    }
-
-    /// The movements of an environment, in its order.
-    fn movements(&self, id: EntityId) -> Option<Vec<EntityId>> {
-        let Entity::Environment(tree) = self.facts.tree(id)? else { return None };
-        let listed = tree.movements.as_ref().map_or(&[][..], |list| &list.names);
-        self.with_done(&without_repeats(&self.resolve_all(id, EntityKind::Movement, listed)?))
     }
 
     /// Movements, each after those that it does; `None` where one is unknown, or does itself.
@@ -327,22 +324,6 @@ impl<'a> Parts<'a> {
         })
     }
 
-    /// The tokens of a range with single spaces between them and no comments.
-    fn folded_text(&self, entity: &EntityRef<'_>, span: Span) -> String {
-        let tokens = &entity.parse.tokens;
-        let first = tokens.partition_point(|(_, place)| place.start < span.start);
-        let within = tokens.iter().skip(first).take_while(|(_, place)| place.end <= span.end);
-        let tokens = within.filter(|(token, _)| !token.is_comment());
-        let mut text = String::new();
-        for (token, place) in tokens {
-            if !text.is_empty() && *token != TokenKind::Comma {
-                text.push(' ');
-            }
-            text += &self.facts.slice(entity.file, place.shifted(entity.span.start));
-        }
-        text
-    }
-
     fn resolve(&self, from: EntityId, kind: EntityKind, name: &Name) -> Option<EntityId> {
         self.facts.resolve(self.facts.file_of(from)?, kind, &name.text).entity()
     }
@@ -404,10 +385,9 @@ impl Statements<'_, '_> {
         check_cancelled();
         self.number += 1;
         let number = self.number;
-        let head = head(action.span, action.blocks().next());
         Some(ResolvedAction {
             number,
-            text: self.parts.folded_text(&self.entity, head),
+            text: self.parts.facts.action_head(&self.entity, action),
             source: self.parts.source(&self.entity, action.span.start)?,
             kind: self.kind(&action.kind)?,
         })
@@ -449,7 +429,7 @@ impl Statements<'_, '_> {
             branches.push(Branch {
                 number: self.number,
                 condition: condition(branch.condition.as_ref()?, self.sensors)?,
-                text: self.parts.folded_text(&self.entity, head(branch.span, Some(block))),
+                text: self.parts.facts.action_text(&self.entity, head(branch.span, Some(block))),
                 source: self.parts.source(&self.entity, branch.span.start)?,
                 body: self.actions(&block.actions)?,
             });
@@ -474,10 +454,6 @@ fn count(number: &ast::Number) -> Option<u32> {
 
 /// Returns the kind of a statement that has no blocks and does no movement.
 fn simple_kind(statement: &Statement, sensors: &[Sensor]) -> Option<ResolvedActionKind> {
-    let until = |clause: &Option<ast::Until>| match clause {
-        Some(clause) => condition(&clause.condition, sensors).map(Some),
-        None => Some(None),
-    };
     Some(match statement {
         Statement::Move(step) => ResolvedActionKind::Move {
             distance: match &step.distance {
@@ -486,7 +462,7 @@ fn simple_kind(statement: &Statement, sensors: &[Sensor]) -> Option<ResolvedActi
                 None => return None,
             },
             speed: speed(step.speed.as_ref())?,
-            until: until(&step.until)?,
+            until: until(step.until.as_ref(), sensors)?,
         },
         Statement::Turn(turn) => turn_kind(turn, sensors)?,
         Statement::Wait(wait) => ResolvedActionKind::Wait {
@@ -494,7 +470,7 @@ fn simple_kind(statement: &Statement, sensors: &[Sensor]) -> Option<ResolvedActi
                 Some(number) => Some(number.value?),
                 None => wait.until.as_ref().map(|_| None)?,
             },
-            until: until(&wait.until)?,
+            until: until(wait.until.as_ref(), sensors)?,
         },
         Statement::Slam => ResolvedActionKind::Slam,
         Statement::Repeat(_) | Statement::If(_) | Statement::Do(_) => return None,
@@ -509,12 +485,9 @@ fn turn_kind(turn: &ast::Turn, sensors: &[Sensor]) -> Option<ResolvedActionKind>
             sensors: indices(&clause.condition.sensors.names, sensors)?,
         });
     }
-    let circle = match &turn.circle {
-        Some(circle) => Some(Circle {
-            radius: length(circle.radius.as_ref()?, circle.unit)?,
-            reverse: turn.reverse.is_some(),
-        }),
-        None => None,
+    let circle = |circle: &ast::Circle| {
+        let radius = length(circle.radius.as_ref()?, circle.unit)?;
+        Some(Circle { radius, reverse: turn.reverse.is_some() })
     };
     Some(ResolvedActionKind::Turn {
         left,
@@ -522,12 +495,9 @@ fn turn_kind(turn: &ast::Turn, sensors: &[Sensor]) -> Option<ResolvedActionKind>
             Some(angle) => Some(angle.value?),
             None => turn.until.is_none().then_some(DEFAULT_ANGLE),
         },
-        circle,
+        circle: optional(turn.circle.as_ref(), circle)?,
         speed: speed(turn.speed.as_ref())?,
-        until: match &turn.until {
-            Some(clause) => Some(condition(&clause.condition, sensors)?),
-            None => None,
-        },
+        until: until(turn.until.as_ref(), sensors)?,
     })
 }
 
@@ -535,19 +505,19 @@ fn condition(condition: &ast::Condition, sensors: &[Sensor]) -> Option<Condition
     Some(Condition {
         sensors: indices(&condition.sensors.names, sensors)?,
         detect: condition.state?.0 == ast::SensorState::Detect,
-        within: match &condition.within {
-            Some(within) => Some(length(within.distance.as_ref()?, within.unit)?),
-            None => None,
-        },
+        within: optional(condition.within.as_ref(), |within| length(within.distance.as_ref()?, within.unit))?,
     })
 }
 
-/// Metres per second at the rim.
-fn speed(clause: Option<&ast::SpeedClause>) -> Option<f64> {
-    match clause {
-        Some(clause) => Some(clause.value.as_ref()?.value? / 100.0),
-        None => Some(motion::RIM_SPEED),
-    }
+#[expect(clippy::option_option, reason = "a clause that is left out is not broken")]
+fn until(clause: Option<&ast::Until>, sensors: &[Sensor]) -> Option<Option<Condition>> {
+    optional(clause, |clause| condition(&clause.condition, sensors))
+}
+
+/// Returns what a clause means that need not be there; `None` where it is broken.
+#[expect(clippy::option_option, reason = "a clause that is left out is not broken")]
+fn optional<T, M>(clause: Option<&T>, meaning: impl FnOnce(&T) -> Option<M>) -> Option<Option<M>> {
+    clause.map_or(Some(None), |clause| meaning(clause).map(Some))
 }
 
 /// Metres. Centimetres are divided, not multiplied, so that `400 centimeters` is exactly 4.
@@ -577,6 +547,8 @@ fn indices_of(ids: &[EntityId]) -> FxHashMap<EntityId, usize> {
 
 #[cfg(test)]
 mod tests {
+    use pydslrep_kinematics::motion;
+
     use super::*;
     use crate::{Blocked, Database};
 

@@ -56,45 +56,33 @@ impl<'a> Signature<'a> {
     }
 
     pub(crate) fn wheel(self) -> Option<&'a Wheel> {
-        match self.entity()? {
-            Entity::Wheel(wheel) => Some(wheel),
-            _ => None,
-        }
+        let Entity::Wheel(wheel) = self.entity()? else { return None };
+        Some(wheel)
     }
 
     pub(crate) fn sensor(self) -> Option<&'a Sensor> {
-        match self.entity()? {
-            Entity::Sensor(sensor) => Some(sensor),
-            _ => None,
-        }
+        let Entity::Sensor(sensor) = self.entity()? else { return None };
+        Some(sensor)
     }
 
     pub(crate) fn robot(self) -> Option<&'a Robot> {
-        match self.entity()? {
-            Entity::Robot(robot) => Some(robot),
-            _ => None,
-        }
+        let Entity::Robot(robot) = self.entity()? else { return None };
+        Some(robot)
     }
 
     pub(crate) fn environment(self) -> Option<&'a Environment> {
-        match self.entity()? {
-            Entity::Environment(environment) => Some(environment),
-            _ => None,
-        }
+        let Entity::Environment(environment) = self.entity()? else { return None };
+        Some(environment)
     }
 
     pub(crate) fn movement(self) -> Option<MovementSignature<'a>> {
-        match self {
-            Self::Movement(movement) => Some(movement),
-            Self::Whole(_) => None,
-        }
+        let Self::Movement(movement) = self else { return None };
+        Some(movement)
     }
 
     fn entity(self) -> Option<&'a Entity> {
-        match self {
-            Self::Movement(_) => None,
-            Self::Whole(parse) => parse.entity.as_ref(),
-        }
+        let Self::Whole(parse) = self else { return None };
+        parse.entity.as_ref()
     }
 
     /// Returns whether it was read without a syntax error, so that something may be concluded from what it lacks.

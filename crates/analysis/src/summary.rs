@@ -6,7 +6,7 @@ use pydslrep_kinematics::{Drive, Model, SpeedProfile, Twist, motion};
 use pydslrep_syntax::ast::{self, Action, ActionKind, Entity, Repeat, Rounds};
 use smol_str::SmolStr;
 
-use crate::defaults::DEFAULT_ANGLE;
+use crate::defaults::{DEFAULT_ANGLE, speed};
 use crate::plan::default_model;
 
 /// Robots of default size, in the order of [`Drive::ALL`]. Each action asks them, with each key.
@@ -69,7 +69,7 @@ impl Time {
         match &action.kind {
             ActionKind::Move(step) => {
                 let length = step.distance.as_ref()?.value? * step.unit?.0.in_metres();
-                Some(Self::driven(length, speed(step.speed.as_ref())?, |_| 1.0))
+                Self::driven(length, step.speed.as_ref(), |_| 1.0)
             }
             ActionKind::Turn(turn) => Self::of_turn(turn),
             ActionKind::Wait(wait) => {
@@ -110,19 +110,23 @@ impl Time {
             Some(circle) => circle.radius.as_ref()?.value? * circle.unit?.0.in_metres(),
             None => 0.0,
         };
-        let speed = speed(turn.speed.as_ref())?;
         let twist = Twist { vx: radius, omega: 1.0, ..Twist::default() };
-        Some(Self::driven(degrees.to_radians(), speed, |model| model.fastest_rim(twist)))
+        Self::driven(degrees.to_radians(), turn.speed.as_ref(), |model| model.fastest_rim(twist))
     }
 
     /// A drive whose rims travel so far for each unit of `amount`.
-    fn driven(amount: f64, speed: f64, rim_per_unit: impl Fn(&Model) -> f64) -> Self {
+    fn driven(
+        amount: f64,
+        clause: Option<&ast::SpeedClause>,
+        rim_per_unit: impl Fn(&Model) -> f64,
+    ) -> Option<Self> {
+        let speed = speed(clause).filter(|speed| *speed > 0.0)?;
         let seconds = MODELS.each_ref().map(|model| {
             let rim = model.as_ref().map_or(0.0, &rim_per_unit);
             let rest = if amount == 0.0 { 0.0 } else { motion::REST };
             SpeedProfile::new(amount.abs() * rim, speed, motion::RIM_ACCELERATION).duration() + rest
         });
-        Self { seconds, calls: Vec::new() }
+        Some(Self { seconds, calls: Vec::new() })
     }
 
     /// Adds another row of actions, so many times.
@@ -136,13 +140,5 @@ impl Time {
                 None => self.calls.push((name.clone(), count * times)),
             }
         }
-    }
-}
-
-/// Metres per second at the rim, above zero.
-fn speed(clause: Option<&ast::SpeedClause>) -> Option<f64> {
-    match clause {
-        Some(clause) => clause.value.as_ref()?.value.map(|speed| speed / 100.0).filter(|speed| *speed > 0.0),
-        None => Some(motion::RIM_SPEED),
     }
 }

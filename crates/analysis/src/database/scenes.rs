@@ -2,13 +2,12 @@
 
 use std::sync::Arc;
 
-use pydslrep_schema::Problem;
 use smol_str::SmolStr;
 
 use super::Database;
 use super::scene_run::SceneRun;
 use crate::diagnostics::PlannedRun;
-use crate::entity::{EntityId, FileId};
+use crate::entity::FileId;
 
 impl Database {
     /// Sets the text of the scene file of an environment by its name, or takes it away. Kept while a file is closed, and
@@ -25,15 +24,6 @@ impl Database {
         self.runs.retain(|_, runs| !runs.is_empty());
         let seen = self.seen_from(file);
         self.touched.extend(seen);
-    }
-
-    /// Returns the problems of a scene file, in the order of the text. Without an environment, or where a robot of it
-    /// is broken, any name is allowed.
-    pub fn scene_problems(&self, environment: Option<EntityId>, text: &str) -> Vec<Problem> {
-        match environment.and_then(|id| self.floor(id)) {
-            Some(floor) => pydslrep_scene::read(text, floor).1,
-            None => pydslrep_scene::problems(text),
-        }
     }
 
     /// Returns the planned runs of the environments with a scene whose actions may be in a file. A run is computed

@@ -5,6 +5,7 @@ use pydslrep_syntax::{Span, TokenKind};
 
 use super::context::Context;
 use super::edits::ProblemEdit;
+use super::example::sensing_trip;
 use super::problem::Problem;
 use super::rule::{Applicability, Checks, Page, Rule};
 use crate::Severity;
@@ -24,24 +25,8 @@ const PAGE: Page = Page {
     why: "Nothing is done there. Probably the actions are still missing. To let a robot stay where it is until \
         a sensor says something else, write `wait until`.",
     imports: &[],
-    example: "\
-wheel wheelL with radius 4.5
-wheel wheelR with radius 4.5
-sensor front
-robot rover with port 23000 has { wheelL wheelR } wheels with sensors { front }
-
-movement trip of rover { repeat until { front } clear { } move 1 meters }
-
-environment yard has { rover } robots with { trip } moves",
-    fixed: "\
-wheel wheelL with radius 4.5
-wheel wheelR with radius 4.5
-sensor front
-robot rover with port 23000 has { wheelL wheelR } wheels with sensors { front }
-
-movement trip of rover { wait until { front } clear move 1 meters }
-
-environment yard has { rover } robots with { trip } moves",
+    example: sensing_trip!("{ repeat until { front } clear { } move 1 meters }"),
+    fixed: sensing_trip!("{ wait until { front } clear move 1 meters }"),
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {

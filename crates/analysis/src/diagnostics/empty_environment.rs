@@ -3,6 +3,7 @@
 use pydslrep_syntax::ast::Entity;
 
 use super::context::Context;
+use super::example::trip;
 use super::problem::Problem;
 use super::rule::{Applicability, Checks, Page, Rule};
 use crate::Severity;
@@ -22,14 +23,7 @@ const PAGE: Page = Page {
     why: "An environment becomes the script that drives its robots. Without robots the script would start and end.",
     imports: &[],
     example: "environment yard has { } robots",
-    fixed: "\
-wheel wheelL with radius 4.5
-wheel wheelR with radius 4.5
-robot rover with port 23000 has { wheelL wheelR } wheels
-
-movement trip of rover { move 1 meters turn left }
-
-environment yard has { rover } robots with { trip } moves",
+    fixed: trip!("{ move 1 meters turn left }"),
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {

@@ -3,6 +3,7 @@
 use pydslrep_syntax::ast::Entity;
 
 use super::context::Context;
+use super::example::trip;
 use super::problem::Problem;
 use super::rule::{Applicability, Checks, Page, Rule};
 use crate::Severity;
@@ -21,22 +22,8 @@ const PAGE: Page = Page {
     what: "There is nothing between the braces of a movement.",
     why: "The robot would not move. Probably the actions are still missing.",
     imports: &[],
-    example: "\
-wheel wheelL with radius 4.5
-wheel wheelR with radius 4.5
-robot rover with port 23000 has { wheelL wheelR } wheels
-
-movement trip of rover { }
-
-environment yard has { rover } robots with { trip } moves",
-    fixed: "\
-wheel wheelL with radius 4.5
-wheel wheelR with radius 4.5
-robot rover with port 23000 has { wheelL wheelR } wheels
-
-movement trip of rover { move 1 meters turn left }
-
-environment yard has { rover } robots with { trip } moves",
+    example: trip!("{ }"),
+    fixed: trip!("{ move 1 meters turn left }"),
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {

@@ -4,6 +4,7 @@ use pydslrep_syntax::Span;
 use pydslrep_syntax::ast::{Action, ActionKind, Direction, Number, Turn};
 
 use super::context::Context;
+use super::example::trip;
 use super::problem::Problem;
 use super::rule::{Applicability, Checks, Page, Rule};
 use crate::Severity;
@@ -25,22 +26,8 @@ const PAGE: Page = Page {
         heading sooner. Beyond 36000 degrees, which are 100 turns, it is an error: no robot is meant to turn for so \
         long.",
     imports: &[],
-    example: "\
-wheel wheelL with radius 4.5
-wheel wheelR with radius 4.5
-robot rover with port 23000 has { wheelL wheelR } wheels
-
-movement trip of rover { turn left -90 }
-
-environment yard has { rover } robots with { trip } moves",
-    fixed: "\
-wheel wheelL with radius 4.5
-wheel wheelR with radius 4.5
-robot rover with port 23000 has { wheelL wheelR } wheels
-
-movement trip of rover { turn right 90 }
-
-environment yard has { rover } robots with { trip } moves",
+    example: trip!("{ turn left -90 }"),
+    fixed: trip!("{ turn right 90 }"),
 };
 
 /// Degrees.

@@ -3,6 +3,7 @@
 use pydslrep_syntax::ast::{ActionKind, Circle, Turn};
 
 use super::context::Context;
+use super::example::trip;
 use super::number_out_of_range::MAX_DISTANCE;
 use super::problem::Problem;
 use super::rule::{Applicability, Checks, Page, Rule};
@@ -24,22 +25,8 @@ const PAGE: Page = Page {
     why: "A robot drives forward or in reverse along a circle whose radius is above zero. A turn in place has \
         no circle and no direction: leave out `in reverse`, or say `with radius`.",
     imports: &[],
-    example: "\
-wheel wheelL with radius 4.5
-wheel wheelR with radius 4.5
-robot rover with port 23000 has { wheelL wheelR } wheels
-
-movement trip of rover { turn left with radius 0 meters }
-
-environment yard has { rover } robots with { trip } moves",
-    fixed: "\
-wheel wheelL with radius 4.5
-wheel wheelR with radius 4.5
-robot rover with port 23000 has { wheelL wheelR } wheels
-
-movement trip of rover { turn left with radius 1 meters }
-
-environment yard has { rover } robots with { trip } moves",
+    example: trip!("{ turn left with radius 0 meters }"),
+    fixed: trip!("{ turn left with radius 1 meters }"),
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {

@@ -5,6 +5,7 @@ use pydslrep_syntax::{Span, Token};
 
 use super::context::Context;
 use super::edits::ProblemEdit;
+use super::example::trip;
 use super::problem::Problem;
 use super::rule::{Applicability, Checks, Page, Rule};
 use crate::Severity;
@@ -25,22 +26,8 @@ const PAGE: Page = Page {
     why: "A block cannot be done two and a half times. For more than 10000 rounds, put one `repeat` into \
         another; there is no endless one. A block that is repeated once is done without `repeat` as well.",
     imports: &[],
-    example: "\
-wheel wheelL with radius 4.5
-wheel wheelR with radius 4.5
-robot rover with port 23000 has { wheelL wheelR } wheels
-
-movement trip of rover { repeat 1 times { move 1 meters turn left } }
-
-environment yard has { rover } robots with { trip } moves",
-    fixed: "\
-wheel wheelL with radius 4.5
-wheel wheelR with radius 4.5
-robot rover with port 23000 has { wheelL wheelR } wheels
-
-movement trip of rover { move 1 meters turn left }
-
-environment yard has { rover } robots with { trip } moves",
+    example: trip!("{ repeat 1 times { move 1 meters turn left } }"),
+    fixed: trip!("{ move 1 meters turn left }"),
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {

@@ -4,6 +4,7 @@ use pydslrep_syntax::Span;
 use pydslrep_syntax::ast::{ActionKind, Number};
 
 use super::context::Context;
+use super::example::trip;
 use super::problem::Problem;
 use super::rule::{Applicability, Checks, Page, Rule};
 use crate::Severity;
@@ -24,22 +25,8 @@ const PAGE: Page = Page {
         metre. 10000 centimetres per second are 360 kilometres per hour. A speed has no direction: to drive \
         backwards, make the distance negative. Without `at`, the robot drives at 9 centimetres per second.",
     imports: &[],
-    example: "\
-wheel wheelL with radius 4.5
-wheel wheelR with radius 4.5
-robot rover with port 23000 has { wheelL wheelR } wheels
-
-movement trip of rover { move 1 meters at -12 }
-
-environment yard has { rover } robots with { trip } moves",
-    fixed: "\
-wheel wheelL with radius 4.5
-wheel wheelR with radius 4.5
-robot rover with port 23000 has { wheelL wheelR } wheels
-
-movement trip of rover { move -1 meters at 12 }
-
-environment yard has { rover } robots with { trip } moves",
+    example: trip!("{ move 1 meters at -12 }"),
+    fixed: trip!("{ move -1 meters at 12 }"),
 };
 
 /// Centimetres per second.

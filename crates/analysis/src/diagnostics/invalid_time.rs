@@ -6,6 +6,7 @@ use rustc_hash::FxHashMap;
 
 use super::calls;
 use super::context::Context;
+use super::example::trip;
 use super::problem::Problem;
 use super::rule::{Applicability, Checks, Page, Rule};
 use crate::summary::Time;
@@ -28,22 +29,8 @@ const PAGE: Page = Page {
     why: "A wait of 0 seconds does nothing. Nobody wants a robot to wait for days: usually there are some \
         zeros too many. For a whole day, write 86400.",
     imports: &[],
-    example: "\
-wheel wheelL with radius 4.5
-wheel wheelR with radius 4.5
-robot rover with port 23000 has { wheelL wheelR } wheels
-
-movement trip of rover { wait 0 seconds move 1 meters }
-
-environment yard has { rover } robots with { trip } moves",
-    fixed: "\
-wheel wheelL with radius 4.5
-wheel wheelR with radius 4.5
-robot rover with port 23000 has { wheelL wheelR } wheels
-
-movement trip of rover { move 1 meters }
-
-environment yard has { rover } robots with { trip } moves",
+    example: trip!("{ wait 0 seconds move 1 meters }"),
+    fixed: trip!("{ move 1 meters }"),
 };
 
 /// Seconds.

@@ -7,6 +7,7 @@ use pydslrep_syntax::EntityKind;
 use pydslrep_syntax::ast::{Action, Condition, SensorKeyword, Within};
 
 use super::context::Context;
+use super::example::sensing_trip;
 use super::number_out_of_range::MAX_DISTANCE;
 use super::planned_run::{OutOfRange, PlannedRun};
 use super::problem::Problem;
@@ -31,24 +32,8 @@ const PAGE: Page = Page {
         that it touches something, but not how far away that is. Beyond the range of a sensor nothing is detected, \
         so a longer distance is the same as none.",
     imports: &[],
-    example: "\
-wheel wheelL with radius 4.5
-wheel wheelR with radius 4.5
-sensor front
-robot rover with port 23000 has { wheelL wheelR } wheels with sensors { front }
-
-movement trip of rover { move until { front } detect within 0 meters }
-
-environment yard has { rover } robots with { trip } moves",
-    fixed: "\
-wheel wheelL with radius 4.5
-wheel wheelR with radius 4.5
-sensor front
-robot rover with port 23000 has { wheelL wheelR } wheels with sensors { front }
-
-movement trip of rover { move until { front } detect within 40 centimeters }
-
-environment yard has { rover } robots with { trip } moves",
+    example: sensing_trip!("{ move until { front } detect within 0 meters }"),
+    fixed: sensing_trip!("{ move until { front } detect within 40 centimeters }"),
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
@@ -92,7 +77,7 @@ fn in_runs(facts: &Facts, file: FileId, runs: &[Arc<PlannedRun>]) -> Vec<Diagnos
 
 fn located(facts: &Facts, run: &PlannedRun, found: &OutOfRange) -> Option<Diagnostic> {
     let entity = facts.entity(found.movement)?;
-    let environment = run.environment();
+    let environment = &run.environment.name;
     let sensors = if found.count == 1 { "this sensor sees nothing" } else { "these sensors see nothing" };
     Some(Diagnostic {
         rule: &RULE,

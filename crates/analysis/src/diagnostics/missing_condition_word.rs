@@ -3,6 +3,7 @@
 use pydslrep_syntax::ast::{Action, ActionKind, Condition};
 
 use super::context::Context;
+use super::example::sensing_trip;
 use super::problem::Problem;
 use super::rule::{Applicability, Checks, Page, Rule};
 use crate::Severity;
@@ -22,24 +23,8 @@ const PAGE: Page = Page {
     why: "`clear` holds when none of the sensors detects anything, `detect` when at least one does. Only the \
         form `turn left until { front }` can do without: there it has always been `clear`.",
     imports: &[],
-    example: "\
-wheel wheelL with radius 4.5
-wheel wheelR with radius 4.5
-sensor front
-robot rover with port 23000 has { wheelL wheelR } wheels with sensors { front }
-
-movement trip of rover { move 1 meters until { front } }
-
-environment yard has { rover } robots with { trip } moves",
-    fixed: "\
-wheel wheelL with radius 4.5
-wheel wheelR with radius 4.5
-sensor front
-robot rover with port 23000 has { wheelL wheelR } wheels with sensors { front }
-
-movement trip of rover { move 1 meters until { front } detect }
-
-environment yard has { rover } robots with { trip } moves",
+    example: sensing_trip!("{ move 1 meters until { front } }"),
+    fixed: sensing_trip!("{ move 1 meters until { front } detect }"),
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {

@@ -12,6 +12,7 @@ mod edits;
 mod empty_block;
 mod empty_environment;
 mod empty_movement;
+mod example;
 mod idle_robot;
 mod implausible_radius;
 mod invalid_angle;

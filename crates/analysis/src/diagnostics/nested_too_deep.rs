@@ -6,6 +6,7 @@ use pydslrep_syntax::{EntityKind, escape, format};
 use super::calls::{self, Calls, MAX_CALL_DEPTH};
 use super::context::Context;
 use super::edits::ProblemEdit;
+use super::example::trip;
 use super::problem::Problem;
 use super::rule::{Applicability, Checks, Page, Rule};
 use crate::Severity;
@@ -25,12 +26,8 @@ const PAGE: Page = Page {
     why: "Python, in which scripts are written, has a limit for blocks within each other, and nobody can \
         follow so many. Put the inner ones into a movement of their own, and `do` that.",
     imports: &[],
-    example: "\
-wheel wheelL with radius 4.5
-wheel wheelR with radius 4.5
-robot rover with port 23000 has { wheelL wheelR } wheels
-
-movement trip of rover { 
+    example: trip!(
+        "{ 
   repeat 2 times {
   repeat 2 times {
   repeat 2 times {
@@ -50,17 +47,9 @@ movement trip of rover {
   repeat 2 times {
   turn left
   } } } } } } } } } } } } } } } } } 
- }
-
-environment yard has { rover } robots with { trip } moves",
-    fixed: "\
-wheel wheelL with radius 4.5
-wheel wheelR with radius 4.5
-robot rover with port 23000 has { wheelL wheelR } wheels
-
-movement trip of rover { repeat 2 times { turn left } }
-
-environment yard has { rover } robots with { trip } moves",
+ }"
+    ),
+    fixed: trip!("{ repeat 2 times { turn left } }"),
 };
 
 /// The maximum depth of nested blocks.

@@ -2,6 +2,7 @@
 
 use pydslrep_syntax::{EntityKind, Span, escape};
 
+use super::example::trip;
 use super::rule::{Applicability, Checks, Page, Rule};
 use crate::{Diagnostic, Edit, EntityRef, Facts, FileId, Fix, Severity};
 
@@ -26,14 +27,7 @@ wheel wheelR with radius 4.5
 robot rover with port 23000 has { wheelL wheelR } wheels
 
 movement trip of rover { move 1 meters }",
-    fixed: "\
-wheel wheelL with radius 4.5
-wheel wheelR with radius 4.5
-robot rover with port 23000 has { wheelL wheelR } wheels
-
-movement trip of rover { move 1 meters }
-
-environment yard has { rover } robots with { trip } moves",
+    fixed: trip!("{ move 1 meters }"),
 };
 
 /// The problem, if the file has it, at its last entity.

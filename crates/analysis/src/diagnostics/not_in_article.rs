@@ -4,6 +4,7 @@ use pydslrep_syntax::ast::{Action, ActionKind, Condition, Entity, Turn, Until};
 use pydslrep_syntax::{Span, Token};
 
 use super::context::Context;
+use super::example::trip;
 use super::problem::Problem;
 use super::rule::{Applicability, Checks, Page, Rule};
 use crate::{Edition, Severity};
@@ -24,22 +25,8 @@ const PAGE: Page = Page {
     why: "The edition is for programs that other tools for the article's language must understand, too. They know \
         moves, turns and `slam`, and nothing that came later.",
     imports: &[],
-    example: "\
-wheel wheelL with radius 4.5
-wheel wheelR with radius 4.5
-robot rover with port 23000 has { wheelL wheelR } wheels
-
-movement trip of rover { repeat 2 times { move 1 meters turn left } }
-
-environment yard has { rover } robots with { trip } moves",
-    fixed: "\
-wheel wheelL with radius 4.5
-wheel wheelR with radius 4.5
-robot rover with port 23000 has { wheelL wheelR } wheels
-
-movement trip of rover { move 1 meters turn left move 1 meters turn left }
-
-environment yard has { rover } robots with { trip } moves",
+    example: trip!("{ repeat 2 times { move 1 meters turn left } }"),
+    fixed: trip!("{ move 1 meters turn left move 1 meters turn left }"),
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {

@@ -3,6 +3,7 @@
 use pydslrep_syntax::ast::{ActionKind, Entity, Move, Number, Within};
 
 use super::context::Context;
+use super::example::trip;
 use super::problem::Problem;
 use super::rule::{Applicability, Checks, Page, Rule};
 use crate::Severity;
@@ -23,22 +24,8 @@ const PAGE: Page = Page {
         zeros too many, or `meters` was written for `centimeters`. Numbers of hundreds of digits exceed what a \
         computer calculates with.",
     imports: &[],
-    example: "\
-wheel wheelL with radius 4.5
-wheel wheelR with radius 4.5
-robot rover with port 23000 has { wheelL wheelR } wheels
-
-movement trip of rover { move 2000000 meters }
-
-environment yard has { rover } robots with { trip } moves",
-    fixed: "\
-wheel wheelL with radius 4.5
-wheel wheelR with radius 4.5
-robot rover with port 23000 has { wheelL wheelR } wheels
-
-movement trip of rover { move 2000 meters }
-
-environment yard has { rover } robots with { trip } moves",
+    example: trip!("{ move 2000000 meters }"),
+    fixed: trip!("{ move 2000 meters }"),
 };
 
 /// Metres.

@@ -6,6 +6,7 @@ use pydslrep_kinematics::{ActionIndex, Place};
 use pydslrep_scene::{Collision, ENDING, SceneObject};
 use pydslrep_syntax::ast::Entity;
 
+use super::example::trip;
 use super::planned_run::PlannedRun;
 use super::rule::{Applicability, Checks, Page, Rule};
 use crate::{Diagnostic, Facts, FileId, Related, Severity};
@@ -30,29 +31,8 @@ const PAGE: Page = Page {
         a `repeat` with `until`, an `if` whose branches end differently, and `slam`. Only the first 100 000 actions of a robot \
         are looked at, and of these as many as the search can follow in a bounded number of steps.",
     imports: &[("yard.scene.toml", "[[box]]\nname = \"crate\"\nat = [1.5, 0]\nsize = [0.4, 0.4]")],
-    example: "\
-wheel wheelL with radius 4.5
-wheel wheelR with radius 4.5
-robot rover with port 23000 has { wheelL wheelR } wheels
-
-movement trip of rover {
-  move 1 meters
-  move 1 meters
-  turn left
-}
-
-environment yard has { rover } robots with { trip } moves",
-    fixed: "\
-wheel wheelL with radius 4.5
-wheel wheelR with radius 4.5
-robot rover with port 23000 has { wheelL wheelR } wheels
-
-movement trip of rover {
-  move 1 meters
-  turn left
-}
-
-environment yard has { rover } robots with { trip } moves",
+    example: trip!("{\n  move 1 meters\n  move 1 meters\n  turn left\n}"),
+    fixed: trip!("{\n  move 1 meters\n  turn left\n}"),
 };
 
 /// The problems of the actions of a file in the runs of its environments.

@@ -36,11 +36,6 @@ impl PlannedRun {
         !self.collisions.is_empty() || !self.out_of_range.is_empty()
     }
 
-    /// The name of the environment.
-    pub(super) fn environment(&self) -> &str {
-        &self.environment.name
-    }
-
     pub(super) fn name(&self, object: SceneObject) -> &str {
         match object {
             SceneObject::Robot(robot) => self.scene.robots.get(robot).map_or("", |robot| &robot.name),

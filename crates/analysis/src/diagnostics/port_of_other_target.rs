@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 use pydslrep_syntax::ast::Entity;
 
 use super::context::Context;
+use super::example::trip;
 use super::problem::Problem;
 use super::rule::{Applicability, Checks, Page, Rule};
 use crate::{Severity, Target};
@@ -34,14 +35,7 @@ robot rover with port 19999 has { wheelL wheelR } wheels
 movement trip of rover { move 1 meters }
 
 environment yard has { rover } robots with { trip } moves",
-    fixed: "\
-wheel wheelL with radius 4.5
-wheel wheelR with radius 4.5
-robot rover with port 23000 has { wheelL wheelR } wheels
-
-movement trip of rover { move 1 meters }
-
-environment yard has { rover } robots with { trip } moves",
+    fixed: trip!("{ move 1 meters }"),
 };
 
 /// 19997 is in V-REP's own configuration, and programs count up from there to the 19999 of its examples.

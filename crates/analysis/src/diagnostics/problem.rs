@@ -116,16 +116,6 @@ impl Problem {
         self
     }
 
-    pub(super) fn undeclared(mut self, kind: EntityKind, name: &SmolStr) -> Self {
-        self.undeclared = Some((kind, name.clone()));
-        self
-    }
-
-    pub(super) fn users(mut self, kinds: &'static [EntityKind]) -> Self {
-        self.users = kinds;
-        self
-    }
-
     pub(super) fn brace(mut self, brace: Brace) -> Self {
         self.brace = Some(brace);
         self

@@ -4,6 +4,7 @@ use pydslrep_syntax::ast::{Entity, Name};
 
 use super::calls::{self, Calls};
 use super::context::Context;
+use super::example::trip;
 use super::problem::Problem;
 use super::rule::{Applicability, Checks, Page, Rule};
 use crate::{EntityId, Severity};
@@ -22,22 +23,8 @@ const PAGE: Page = Page {
     what: "A movement does itself: directly, or by way of the movements that it does.",
     why: "It would never end. To do something again and again, write `repeat 10000 times`.",
     imports: &[],
-    example: "\
-wheel wheelL with radius 4.5
-wheel wheelR with radius 4.5
-robot rover with port 23000 has { wheelL wheelR } wheels
-
-movement trip of rover { move 1 meters do trip }
-
-environment yard has { rover } robots with { trip } moves",
-    fixed: "\
-wheel wheelL with radius 4.5
-wheel wheelR with radius 4.5
-robot rover with port 23000 has { wheelL wheelR } wheels
-
-movement trip of rover { repeat 100 times { move 1 meters } }
-
-environment yard has { rover } robots with { trip } moves",
+    example: trip!("{ move 1 meters do trip }"),
+    fixed: trip!("{ repeat 100 times { move 1 meters } }"),
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {

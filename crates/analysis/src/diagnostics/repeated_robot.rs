@@ -3,6 +3,7 @@
 use pydslrep_syntax::ast::Entity;
 
 use super::context::Context;
+use super::example::trip;
 use super::problem::Problem;
 use super::repeated_wheel::repeats;
 use super::rule::{Applicability, Checks, Page, Rule};
@@ -31,14 +32,7 @@ robot rover with port 23000 has { wheelL wheelR } wheels
 movement trip of rover { move 1 meters }
 
 environment yard has { rover rover } robots with { trip } moves",
-    fixed: "\
-wheel wheelL with radius 4.5
-wheel wheelR with radius 4.5
-robot rover with port 23000 has { wheelL wheelR } wheels
-
-movement trip of rover { move 1 meters }
-
-environment yard has { rover } robots with { trip } moves",
+    fixed: trip!("{ move 1 meters }"),
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {

@@ -60,7 +60,8 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
 }
 
 fn problem(context: &Context<'_>, tree: &Entity, kind: EntityKind, name: &Name, taken: &[&str]) -> Problem {
-    let mut problem = RULE.problem(name.span, message(context, kind, name)).undeclared(kind, &name.text);
+    let mut problem = RULE.problem(name.span, message(context, kind, name));
+    problem.undeclared = Some((kind, name.text.clone()));
     if ["and", "then", "or"].contains(&name.text.as_str()) {
         return problem
             .help("list the names one after another, with or without commas")

@@ -52,11 +52,11 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     if !asked || context.is_skipped(kind, name) || !context.users_of_own().is_empty() {
         return;
     }
-    let problem = RULE
+    let mut problem = RULE
         .problem(name.span, format!("nothing uses the {} `{}`", kind.noun(), name.text))
         .help(format!("{place}, or leave it out"))
-        .about(kind, name.text.clone())
-        .users(users_of(kind));
+        .about(kind, name.text.clone());
+    problem.users = users_of(kind);
     problems.push(match context.whole() {
         Some(whole) if context.errors.is_empty() && leaves_nothing_unused(context) => {
             problem.suggestion("remove it", [whole])

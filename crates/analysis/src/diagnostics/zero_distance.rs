@@ -3,6 +3,7 @@
 use pydslrep_syntax::ast::ActionKind;
 
 use super::context::Context;
+use super::example::trip;
 use super::problem::Problem;
 use super::rule::{Applicability, Checks, Page, Rule, Tag};
 use crate::Severity;
@@ -21,22 +22,8 @@ const PAGE: Page = Page {
     what: "A robot moves 0 meters or 0 centimeters.",
     why: "The robot stays where it is, so the line has no effect. Maybe a number was to be filled in later.",
     imports: &[],
-    example: "\
-wheel wheelL with radius 4.5
-wheel wheelR with radius 4.5
-robot rover with port 23000 has { wheelL wheelR } wheels
-
-movement trip of rover { turn left move 0 meters }
-
-environment yard has { rover } robots with { trip } moves",
-    fixed: "\
-wheel wheelL with radius 4.5
-wheel wheelR with radius 4.5
-robot rover with port 23000 has { wheelL wheelR } wheels
-
-movement trip of rover { turn left }
-
-environment yard has { rover } robots with { trip } moves",
+    example: trip!("{ turn left move 0 meters }"),
+    fixed: trip!("{ turn left }"),
 };
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {

@@ -237,19 +237,11 @@ impl Facts {
 
     /// Makes the scripts of a file for a target from now on; returns whether that is new.
     pub(crate) fn set_target(&mut self, file: FileId, target: Target) -> bool {
-        let is_new = self.target(file) != target;
-        if is_new {
-            self.targets.insert(file, target);
-        }
-        is_new
+        self.targets.insert(file, target).unwrap_or_default() != target
     }
 
     /// Allows a file the statements of an edition from now on; returns whether that is new.
     pub(crate) fn set_edition(&mut self, file: FileId, edition: Edition) -> bool {
-        let is_new = self.edition(file) != edition;
-        if is_new {
-            self.editions.insert(file, edition);
-        }
-        is_new
+        self.editions.insert(file, edition).unwrap_or_default() != edition
     }
 }

@@ -29,11 +29,6 @@ pub(crate) struct Window {
 }
 
 impl File {
-    /// The text of a range.
-    pub(crate) fn slice(&self, span: Span) -> String {
-        span.slice(&self.text)
-    }
-
     /// The line ending that the file uses.
     pub(crate) fn line_ending(&self) -> &'static str {
         let first = self.text.lines().next().map(|line| line.to_string()).unwrap_or_default();
@@ -62,14 +57,14 @@ impl File {
         loop {
             let parses = if end >= self.slots.len() {
                 let window = Span::new(first_start, Span::of_rope(&self.text).len());
-                Some(parse(&self.slice(window)))
+                Some(parse(&window.slice(&self.text)))
             } else {
                 let boundary = shift(end_offset, grown);
                 self.read_up_to(first_start, boundary, end, grown, end_offset, &mut relexed)
             };
             if let Some(parses) = parses {
                 let replaced = first..end.min(self.slots.len());
-                relexed += token_count(&parses);
+                relexed += parses.iter().map(|(_, parse)| parse.tokens.len()).sum::<usize>();
                 return Window { untouched: untouched(&replaced), replaced, relexed, parses };
             }
             let next_end = (end + growth).min(self.slots.len());
@@ -92,7 +87,7 @@ impl File {
         relexed: &mut usize,
     ) -> Option<Vec<(Span, Parse)>> {
         let ahead: u32 = self.slots[end..].iter().take(1 + LOOKAHEAD).map(|slot| slot.len).sum();
-        let text = self.slice(Span::new(start, shift(end_offset + ahead, grown)));
+        let text = Span::new(start, shift(end_offset + ahead, grown)).slice(&self.text);
         let tokens = lex(&text);
         *relexed += tokens.len();
         let starts = cut(&text, &tokens);
@@ -138,11 +133,6 @@ impl File {
 
 fn shift(offset: u32, by: i64) -> u32 {
     u32::try_from(i64::from(offset) + by).unwrap_or(u32::MAX)
-}
-
-/// Returns the number of tokens in some entities.
-fn token_count(parses: &[(Span, Parse)]) -> usize {
-    parses.iter().map(|(_, parse)| parse.tokens.len()).sum()
 }
 
 /// The nearest range that fits the text and cuts no character.

@@ -92,9 +92,8 @@ impl Facts {
 
     /// Looks the imports of a file up anew; returns the paths that it imported before.
     pub(super) fn update_imports(&mut self, file: FileId) -> Vec<String> {
-        let is_import = |id: &EntityId| matches!(self.tree(*id), Some(Entity::Import(_)));
-        let entities: Vec<EntityId> =
-            self.slots(file).iter().map(|slot| slot.entity).filter(is_import).collect();
+        let entities = self.slots(file).iter().map(|slot| slot.entity);
+        let entities: Vec<EntityId> = entities.filter(|id| self.any_import(&[*id])).collect();
         let paths: Vec<String> = entities.iter().filter_map(|id| self.import_path(*id)).collect();
         self.imports.set(file, entities, paths)
     }

@@ -29,26 +29,15 @@ impl Facts {
     /// A file as it is now, or the entities of it that touch a range; `None` for a closed file.
     pub fn snapshot(&self, file: FileId, range: Option<Span>) -> Option<Snapshot> {
         let text = self.text(file)?.clone();
-        let all = self.slots(file);
-        let (from, start, end) = match range {
-            None => (0, 0, u32::MAX),
-            Some(range) => {
-                // The one that ends where the range begins touches it too.
-                let (index, start) = self.slot_at(file, range.start.saturating_sub(1));
-                (index, start, range.end)
-            }
+        // The one that ends where the range begins touches it too.
+        let (from, end) = range.map_or((0, u32::MAX), |range| (range.start.saturating_sub(1), range.end));
+        let (_, start) = self.slot_at(file, from);
+        let touched = self.entities_from(file, from).take_while(|entity| entity.span.start <= end);
+        let keep = |entity: EntityRef<'_>| {
+            let parse = Arc::clone(self.shared_parse(entity.id)?);
+            Some(Kept { entity: entity.id, len: entity.span.len(), parse })
         };
-        let mut at = start;
-        let slots = all.get(from..).unwrap_or_default().iter().take_while(|slot| {
-            let begins = at;
-            at += slot.len;
-            begins <= end
-        });
-        let keep = |slot: &crate::facts::slots::EntitySlot| {
-            let parse = Arc::clone(self.shared_parse(slot.entity)?);
-            Some(Kept { entity: slot.entity, len: slot.len, parse })
-        };
-        let slots = slots.filter_map(keep).collect();
+        let slots = touched.filter_map(keep).collect();
         Some(Snapshot { file, text, start, slots, cancellation: Vec::new() })
     }
 }
