@@ -84,27 +84,17 @@ impl Recording {
             }
         }
         readings.sort_by(|(_, one), (_, other)| one.time.total_cmp(&other.time));
-        let mut readings = readings.into_iter().peekable();
+        let mut unread = readings.into_iter().peekable();
         let record = |timed: &TimedPose| {
             let t = timed.time.unwrap_or_default();
             // A record has what was read since the one before.
-            let mut read = BTreeMap::new();
-            while let Some((sensor, reading)) = readings.next_if(|(_, reading)| reading.time < t) {
-                read.insert(sensor.to_owned(), reading.distance);
+            let mut readings = BTreeMap::new();
+            while let Some((sensor, reading)) = unread.next_if(|(_, reading)| reading.time < t) {
+                readings.insert(sensor.to_owned(), reading.distance);
             }
             let Pose { x, y, theta } = timed.pose;
-            let robot = robot.robot.clone();
-            TraceRecord {
-                t,
-                robot,
-                x,
-                y,
-                theta,
-                wheels: Vec::new(),
-                readings: read,
-                movement: None,
-                action: None,
-            }
+            let (robot, wheels) = (robot.robot.clone(), Vec::new());
+            TraceRecord { t, robot, x, y, theta, wheels, readings, movement: None, action: None }
         };
         self.poses(robot).iter().map(record).collect()
     }

@@ -17,7 +17,7 @@ use crate::messages::{
 use crate::{BagError, LIBRARY};
 
 /// The names of a robot's topics and frames.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct RobotTopics {
     /// The robot's name in traces.
     pub robot: String,

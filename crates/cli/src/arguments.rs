@@ -4,7 +4,7 @@ use std::path::Path;
 
 use clap::builder::styling::{AnsiColor, Effects, Styles};
 use clap::error::{ContextKind, ContextValue};
-use clap::{Parser, Subcommand, ValueEnum};
+use clap::{ColorChoice, Parser, Subcommand};
 use pydslrep_workspace::DocumentKind;
 
 use crate::commands::{
@@ -51,7 +51,7 @@ pub(crate) struct Arguments {
         hide_possible_values = true
     )]
     #[arg(help = "When to use colours: auto, always or never")]
-    pub(crate) color: Color,
+    color: ColorChoice,
 }
 
 #[derive(Debug, Subcommand)]
@@ -78,22 +78,13 @@ pub(crate) enum Command {
     Own(own::Arguments),
 }
 
-/// When to use colours.
-#[derive(Debug, Clone, Copy, Default, ValueEnum)]
-pub(crate) enum Color {
-    #[default]
-    Auto,
-    Always,
-    Never,
-}
-
-impl Color {
-    /// Applies to everything that is printed from now on.
-    pub(crate) fn write_global(self) {
-        match self {
-            Self::Auto => anstream::ColorChoice::Auto,
-            Self::Always => anstream::ColorChoice::Always,
-            Self::Never => anstream::ColorChoice::Never,
+impl Arguments {
+    /// Applies the choice of colours to everything that is printed from now on.
+    pub(crate) fn apply_color(&self) {
+        match self.color {
+            ColorChoice::Auto => anstream::ColorChoice::Auto,
+            ColorChoice::Always => anstream::ColorChoice::Always,
+            ColorChoice::Never => anstream::ColorChoice::Never,
         }
         .write_global();
     }

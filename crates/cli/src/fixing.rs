@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use pydslrep_analysis::{Database, FileId, Fixing};
+use pydslrep_analysis::{FileId, Fixing};
 
 use crate::failure::Failure;
 use crate::inputs::Inputs;
@@ -32,10 +32,6 @@ pub(crate) fn fix(inputs: &mut Inputs) -> Fixed {
     }
 }
 
-fn text(database: &Database, file: FileId) -> String {
-    database.text(file).map(ToString::to_string).unwrap_or_default()
-}
-
 impl Fixed {
     /// Writes the changed files; a program from standard input goes to standard output, changed or not. A file that
     /// cannot be written is in the database as it was.
@@ -44,7 +40,7 @@ impl Fixed {
     /// When standard output cannot be written.
     pub(crate) fn write(&mut self, inputs: &mut Inputs, failures: &mut Vec<Failure>) -> Result<(), Failure> {
         for file in inputs.files().to_vec() {
-            let now = text(inputs.database(), file);
+            let now = inputs.text(file);
             if inputs.place(file).is_none() {
                 output::print_raw(&now)?;
                 continue;

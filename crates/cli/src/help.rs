@@ -3,8 +3,6 @@
 //! Its lines are broken here, because a command and its explanation are two columns, and an example that continues on the
 //! next line must not look like two. They fit the terminal, so `clap`, which wraps all help, leaves them as they are.
 
-use std::fmt;
-
 use crate::report::output;
 
 /// Longer lines are hard to read.
@@ -41,7 +39,8 @@ impl Help {
     }
 
     fn wrapped(self, columns: usize) -> String {
-        let mut paragraphs = vec![format!("Examples:\n{}", Table { examples: self.examples, columns })];
+        let table = Table { examples: self.examples, columns };
+        let mut paragraphs = vec![format!("Examples:\n{}", table.text())];
         paragraphs.extend(self.notes.iter().map(|note| wrapped_note(note, columns)));
         paragraphs.join("\n\n")
     }
@@ -68,6 +67,16 @@ struct Table {
 }
 
 impl Table {
+    fn text(&self) -> String {
+        let column = self.explanations();
+        let examples: Vec<String> = self
+            .examples
+            .iter()
+            .map(|(command, explanation)| self.example(column, command, explanation))
+            .collect();
+        examples.join("\n")
+    }
+
     /// The column of explanations; `None` if they stand below their commands, because most would not fit beside them.
     fn explanations(&self) -> Option<usize> {
         let max = self.columns.checked_sub(INDENT.len() + GAP + MIN_EXPLANATION)?;
@@ -78,25 +87,17 @@ impl Table {
         (fitting.len() > wider.len()).then_some(INDENT.len() + longest + GAP)
     }
 
-    fn write_example(
-        &self,
-        f: &mut fmt::Formatter<'_>,
-        column: Option<usize>,
-        example: (&str, &str),
-    ) -> fmt::Result {
-        let (command, explanation) = example;
+    fn example(&self, column: Option<usize>, command: &str, explanation: &str) -> String {
         let start = format!("{INDENT}{command}");
-        let is_beside = column.is_some_and(|column| width(&start) + GAP <= column);
-        if explanation.is_empty() || !is_beside {
-            write!(f, "{}", self.broken(&start))?;
-        }
         if explanation.is_empty() {
-            return Ok(());
+            return self.broken(&start);
         }
+        let is_beside = column.is_some_and(|column| width(&start) + GAP <= column);
         let below = column.map_or_else(|| HANGING.to_owned(), |column| " ".repeat(column));
         let first = if is_beside { format!("{start:0$}", below.len()) } else { below.clone() };
         let options = options(self.columns).initial_indent(&first).subsequent_indent(&below);
-        write!(f, "{}{}", if is_beside { "" } else { "\n" }, textwrap::fill(explanation, options))
+        let explained = textwrap::fill(explanation, options);
+        if is_beside { explained } else { format!("{}\n{explained}", self.broken(&start)) }
     }
 
     /// A command that is too wide, with a backslash before each break, as a shell reads it.
@@ -107,19 +108,6 @@ impl Table {
         let options = options(self.columns.saturating_sub(2)).subsequent_indent(HANGING);
         let joined = joined_values(command);
         textwrap::wrap(&joined, options).join(" \\\n").replace(NO_BREAK, " ")
-    }
-}
-
-impl fmt::Display for Table {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let column = self.explanations();
-        for (index, example) in self.examples.iter().enumerate() {
-            if index > 0 {
-                writeln!(f)?;
-            }
-            self.write_example(f, column, *example)?;
-        }
-        Ok(())
     }
 }
 

@@ -40,7 +40,7 @@ fn main() -> ExitCode {
             None => error.exit(),
         },
     };
-    arguments.color.write_global();
+    arguments.apply_color();
     let outcome = match arguments.command {
         Command::Check(arguments) => commands::check::run(&arguments),
         Command::Build(arguments) => commands::build::run(&arguments),

@@ -63,10 +63,7 @@ impl Port {
     /// If a robot is named that the environment does not have.
     pub(crate) fn of_robots(choices: &[Self], environment: &Environment) -> Result<Vec<u16>, Failure> {
         let robots = &environment.robots;
-        let named = choices.iter().filter_map(|choice| choice.robot.as_deref());
-        if let Some(unknown) = named.into_iter().find(|name| robots.iter().all(|robot| robot.name != *name)) {
-            return Err(no_robot(unknown, environment));
-        }
+        check_robots(choices.iter().filter_map(|choice| choice.robot.as_deref()), environment)?;
         let chosen = |robot: Option<&str>| {
             choices.iter().rev().find(|choice| choice.robot.as_deref() == robot).map(|choice| choice.number)
         };
@@ -75,11 +72,21 @@ impl Port {
     }
 }
 
-/// The failure for a name that no robot of an environment has.
-pub(crate) fn no_robot(name: &str, environment: &Environment) -> Failure {
-    let names: Vec<String> = environment.robots.iter().map(|robot| format!("`{}`", robot.name)).collect();
-    Failure::new(format!("there is no robot `{name}` in `{}`", environment.name))
-        .help(format!("its robots: {}", names.join(", ")))
+/// Checks the names of robots in options.
+///
+/// # Errors
+/// If a robot is named that the environment does not have.
+pub(crate) fn check_robots<'a>(
+    mut named: impl Iterator<Item = &'a str>,
+    environment: &Environment,
+) -> Result<(), Failure> {
+    let robots = &environment.robots;
+    let Some(unknown) = named.find(|name| robots.iter().all(|robot| robot.name != *name)) else {
+        return Ok(());
+    };
+    let names: Vec<String> = robots.iter().map(|robot| format!("`{}`", robot.name)).collect();
+    Err(Failure::new(format!("there is no robot `{unknown}` in `{}`", environment.name))
+        .help(format!("its robots: {}", names.join(", "))))
 }
 
 /// Parses `CODE=LEVEL` options; the last one for a code wins.

@@ -109,12 +109,12 @@ pub fn write_runtime(
         }
         Found::Nothing => {
             fs::create_dir_all(folder)?;
-            put(&path, &current, &PackageLocation::Empty)?;
+            put(&path, &current, None)?;
             Ok(RuntimeFolder::Written(path.clone()))
         }
         Found::Current => Ok(RuntimeFolder::Current(path.clone())),
         Found::Ours { version, added } => {
-            put(&path, &current, &PackageLocation::Taken { added: &added })?;
+            put(&path, &current, Some(&added))?;
             Ok(RuntimeFolder::Replaced { path: path.clone(), before: version })
         }
         Found::Changed(changed) => Ok(RuntimeFolder::Kept(Kept { path: path.clone(), changed })),
@@ -133,13 +133,13 @@ pub fn provide_runtime(cache: &Path) -> Result<PathBuf, WriteError> {
     let folder = cache.join(format!("runtime-{VERSION}-{}", &fingerprint[..16]));
     let path = folder.join(NAME);
     let provide = || {
-        let place = match inspect(&path, &current)? {
+        let kept: Option<&[String]> = match inspect(&path, &current)? {
             Found::Current => return Ok(()),
-            Found::Nothing => PackageLocation::Empty,
-            Found::Ours { .. } | Found::Changed(_) => PackageLocation::Taken { added: &[] },
+            Found::Nothing => None,
+            Found::Ours { .. } | Found::Changed(_) => Some(&[]),
         };
         fs::create_dir_all(&folder)?;
-        put(&path, &current, &place)
+        put(&path, &current, kept)
     };
     beside_others(provide).map_err(|error| WriteError::unwritten(&path, error))?;
     Ok(folder)
@@ -224,30 +224,18 @@ fn list(path: &Path) -> io::Result<Vec<Entry>> {
     Ok(files)
 }
 
-/// Where the package is put.
-enum PackageLocation<'a> {
-    /// There is nothing.
-    Empty,
-    /// There is a copy to replace, with files that a user added and that are kept.
-    Taken { added: &'a [String] },
-}
-
-/// Puts the package into its place, with the files that were added to the copy that is there.
-fn put(path: &Path, current: &Record, place: &PackageLocation<'_>) -> io::Result<()> {
+/// Puts the package into its place. If there is a copy to replace, the files in it that a user has added are kept.
+fn put(path: &Path, current: &Record, added: Option<&[String]>) -> io::Result<()> {
     let new = NewFolder::begin(path)?;
     for file in files() {
         new.add(&file.path, &file.content)?;
     }
     new.add(RECORD, current.to_json().as_bytes())?;
-    match place {
-        PackageLocation::Empty => new.finish(path),
-        PackageLocation::Taken { added } => {
-            for name in *added {
-                new.add(name, &read(path, name)?)?;
-            }
-            new.replace(path)
-        }
+    let Some(added) = added else { return new.finish(path) };
+    for name in added {
+        new.add(name, &read(path, name)?)?;
     }
+    new.replace(path)
 }
 
 /// Repeats an attempt that failed because another process wrote the same package: each time, one of them completes.

@@ -169,8 +169,13 @@ fn obstacle(view: &View, obstacle: &Obstacle, clock: &Clock) -> Group {
     let drawn = floor::obstacles(view, std::iter::once(obstacle));
     let frames = obstacle_frames(view, obstacle, clock);
     let Some(last) = frames.last() else { return drawn };
+    moved(&frames, last, clock, drawn)
+}
+
+/// What is drawn about the origin, moved along key frames; viewers without animation show it at the last one.
+fn moved(frames: &[Frame], last: &Frame, clock: &Clock, drawn: Group) -> Group {
     let times = clock.key_times(frames.iter().map(|frame| frame.seconds));
-    let places = values(&frames, |frame| format!("{},{}", pixels(frame.x), pixels(frame.y)));
+    let places = values(frames, |frame| format!("{},{}", pixels(frame.x), pixels(frame.y)));
     Group::new()
         .set("transform", format!("translate({} {})", pixels(last.x), pixels(last.y)))
         .add(transformation(clock, "translate", places, &times))
@@ -224,16 +229,12 @@ fn body(view: &View, route: &Route, colour: &str, clock: &Clock) -> Group {
     let frames = frames(view, route);
     let Some(last) = frames.last() else { return Group::new() };
     let times = clock.key_times(frames.iter().map(|frame| frame.seconds));
-    let places = values(&frames, |frame| format!("{},{}", pixels(frame.x), pixels(frame.y)));
     let turns = values(&frames, |frame| pixels(frame.degrees).to_string());
     let turned = Group::new()
         .set("transform", format!("rotate({})", pixels(last.degrees)))
         .add(transformation(clock, "rotate", turns, &times))
         .add(robots::body_about_origin(view.scale, route.body, colour, robots::END_FILL, 2.0));
-    Group::new()
-        .set("transform", format!("translate({} {})", pixels(last.x), pixels(last.y)))
-        .add(transformation(clock, "translate", places, &times))
-        .add(turned)
+    moved(&frames, last, clock, turned)
 }
 
 /// The timeline with the progress of the replay.

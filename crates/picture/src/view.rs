@@ -39,7 +39,7 @@ impl View {
     pub(crate) fn of(routes: &[Route], obstacles: &[Obstacle], left: f64, top: f64) -> Self {
         let (mut x, mut y) = (Span::EMPTY, Span::EMPTY);
         for route in routes {
-            let reach = route.body.length.hypot(route.body.width) / 2.0;
+            let reach = route.body.reach();
             let known = route.planned.iter().chain(&route.driven);
             for timed in known.chain(route.open_ways().flatten()).filter(|timed| is_drawable(timed)) {
                 let pose = timed.pose;
@@ -66,15 +66,8 @@ impl View {
         let scale = (MAX_WIDTH / x.length()).min(MAX_HEIGHT / y.length());
         x.widen(MIN_SIDE / scale);
         y.widen(MIN_SIDE / scale);
-        Self {
-            left,
-            top,
-            width: x.length() * scale,
-            height: y.length() * scale,
-            scale,
-            x_min: x.low,
-            y_max: y.high,
-        }
+        let (width, height) = (x.length() * scale, y.length() * scale);
+        Self { left, top, width, height, scale, x_min: x.low, y_max: y.high }
     }
 
     /// The position of a point of the floor in the picture.

@@ -54,11 +54,6 @@ pub fn collisions(scene: &Scene, plan: &Plan) -> Vec<Collision> {
     found
 }
 
-/// The radius of a circle around a body.
-fn reach(body: Body) -> f64 {
-    body.length.hypot(body.width) / 2.0
-}
-
 /// The obstacles of a scene.
 struct Obstacles {
     fixed: Space,
@@ -95,8 +90,11 @@ fn with_obstacle(obstacles: &Obstacles, robot: usize, body: Body, path: &RobotPa
     for leg in path.legs.iter().filter(|leg| leg.kind != LegKind::Whole) {
         let mut first = with_fixed(&obstacles.fixed, body, leg, &mut steps);
         if let Some(start) = leg.start {
-            let way =
-                BodyMotion { start, speed: leg.top_speed(reach(body)), pose: |seconds| leg.pose_at(seconds) };
+            let way = BodyMotion {
+                start,
+                speed: leg.top_speed(body.reach()),
+                pose: |seconds| leg.pose_at(seconds),
+            };
             for other in &mut moving {
                 let until = first.map_or(leg.duration, |(seconds, _)| seconds);
                 first = other.meet(body, &way, until).map(|seconds| (seconds, other.obstacle)).or(first);
@@ -115,7 +113,7 @@ fn with_obstacle(obstacles: &Obstacles, robot: usize, body: Body, path: &RobotPa
 /// The first obstacle on a leg that does not move, and the seconds until it is met. Each step covers the distance to the
 /// nearest one, since nothing can be hit earlier; so nothing is too thin to be found.
 fn with_fixed(space: &Space, body: Body, leg: &Leg, steps: &mut u32) -> Option<(f64, usize)> {
-    let speed = leg.top_speed(reach(body));
+    let speed = leg.top_speed(body.reach());
     let mut seconds = 0.0;
     while seconds < leg.duration && *steps < MAX_STEPS {
         *steps += 1;
@@ -187,16 +185,11 @@ fn of_two(a: (usize, Body, &RobotPath), b: (usize, Body, &RobotPath)) -> Option<
             let (robot, other, me, you) =
                 if one.drives() { (a.0, b.0, one, two) } else { (b.0, a.0, two, one) };
             let leg = me.leg?;
-            return Some(Collision {
-                robot,
-                action: leg.index,
-                place: leg.place.clone(),
-                time: Some(time),
-                pose: me.pose,
-                with: SceneObject::Robot(other),
-                other_action: you.leg.map(|leg| leg.index),
-                other_place: you.leg.map(|leg| leg.place.clone()).unwrap_or_default(),
-            });
+            let (with, time) = (SceneObject::Robot(other), Some(time));
+            let (action, place, pose) = (leg.index, leg.place.clone(), me.pose);
+            let other_action = you.leg.map(|leg| leg.index);
+            let other_place = you.leg.map(|leg| leg.place.clone()).unwrap_or_default();
+            return Some(Collision { robot, action, place, time, pose, with, other_action, other_place });
         }
         time = (time + step(distance, speed)).min(change);
     }
@@ -248,7 +241,7 @@ impl<'a> Timetable<'a> {
 
 impl Moment<'_> {
     fn speed(&self, body: Body) -> f64 {
-        self.leg.map_or(0.0, |leg| leg.top_speed(reach(body)))
+        self.leg.map_or(0.0, |leg| leg.top_speed(body.reach()))
     }
 
     fn drives(&self) -> bool {

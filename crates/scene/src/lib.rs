@@ -24,7 +24,7 @@ pub use file::{ENDING, SCHEMA, json_schema, manual, problems, read};
 pub use mjcf::mjcf;
 pub use mount::{Mount, mounts_by_name};
 pub use obstacle::{Obstacle, Shape};
-pub use robot::{Body, Frame, Objects, Robot, Sensor, SensorKind, Wheel};
+pub use robot::{Body, Frame, Objects, Robot, Sensor, SensorKind, Wheel, geometry_of};
 pub use ros2::{Ros2, Ros2Value, Topics};
 pub use space::{Near, SceneObject, Sighting, Space, distance_between, triangulate};
 pub use trajectory::{Trajectory, TrajectoryError, TrajectorySegment, Waypoint};

@@ -83,6 +83,21 @@ impl Frame {
     }
 }
 
+/// The distances between wheels at these places, which are in the order of the type; metres ahead and to the left of any
+/// point. A type whose wheels are on one axle has the default wheelbase.
+pub fn geometry_of(drive: Drive, wheels: &[(f64, f64)]) -> Geometry {
+    let places = || drive.row().wheels.iter().zip(wheels);
+    // Least squares: each wheel is by a share of half of the distance away from the middle.
+    let fitted = |wheels: Vec<(f64, f64)>| {
+        let sum: f64 = wheels.iter().map(|(share, along)| share * along).sum();
+        2.0 * sum / wheels.iter().map(|(share, _)| share * share).sum::<f64>()
+    };
+    let track = fitted(places().map(|(place, at)| (place.left, at.1)).collect());
+    let ahead = places().map(|(place, at)| (place.ahead, at.0)).collect();
+    let wheelbase = if drive.row().has_wheelbase() { fitted(ahead) } else { defaults::GEOMETRY.wheelbase };
+    Geometry { track, wheelbase }
+}
+
 /// A driven wheel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Wheel {
@@ -136,6 +151,11 @@ impl Body {
     pub fn corners(&self) -> [(f64, f64); 4] {
         let (x, y) = (self.length / 2.0, self.width / 2.0);
         [(x, y), (-x, y), (-x, -y), (x, -y)]
+    }
+
+    /// The radius of a circle around it, metres.
+    pub fn reach(&self) -> f64 {
+        self.length.hypot(self.width) / 2.0
     }
 }
 

@@ -218,16 +218,8 @@ impl Reader<'_> {
             }
             let is_complete = missing.is_empty();
             let Location { written, names, index, .. } = at.clone();
-            self.contents.sections.push(Section {
-                table,
-                written,
-                names,
-                index,
-                name_span,
-                is_complete,
-                values,
-                wrong,
-            });
+            let section = Section { table, written, names, index, name_span, is_complete, values, wrong };
+            self.contents.sections.push(section);
         }
         for (inside, entry) in inner {
             self.node(&inside, entry.key_span, &entry.node);

@@ -279,19 +279,9 @@ impl World {
         let t = self.time();
         self.robots.iter().zip(&self.scene.robots).map(move |(state, robot)| {
             let Pose { x, y, theta } = state.pose;
+            let (robot, readings) = (robot.name.clone(), BTreeMap::new());
             let wheels = state.joints.iter().map(|joint| joint.rate).collect();
-            let readings = BTreeMap::new();
-            TraceRecord {
-                t,
-                robot: robot.name.clone(),
-                x,
-                y,
-                theta,
-                wheels,
-                readings,
-                movement: None,
-                action: None,
-            }
+            TraceRecord { t, robot, x, y, theta, wheels, readings, movement: None, action: None }
         })
     }
 

@@ -42,7 +42,7 @@ const HELP: Help = Help {
 #[command(after_help = HELP.text())]
 pub(crate) struct Arguments {
     /// Programs, folders with programs, or `-` for standard input [default: this folder]
-    #[arg(value_name = "PATH")]
+    #[arg(value_name = "PATH", default_value = ".", hide_default_value = true)]
     paths: Vec<PathBuf>,
     /// The folder to write to, created if missing [default: that of pydslrep.toml, else next to each program]
     #[arg(short, long, value_name = "DIR")]
@@ -82,10 +82,8 @@ struct Script {
 /// # Errors
 /// If a script cannot be written, or the arguments do not fit the programs.
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    let here = [PathBuf::from(".")];
-    let paths = if arguments.paths.is_empty() { &here } else { arguments.paths.as_slice() };
     let options = Config::of_target(arguments.target).merged_over(Config::of_edition(arguments.edition));
-    let (inputs, failures) = Inputs::open(paths, &options);
+    let (inputs, failures) = Inputs::open(&arguments.paths, &options);
     inputs.check_settings()?;
     let mut scripts = Vec::new();
     let (mut has_errors, mut found) = (false, false);

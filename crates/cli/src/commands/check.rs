@@ -40,7 +40,7 @@ const HELP: Help = Help {
 #[command(after_help = HELP.text())]
 pub(crate) struct Arguments {
     /// Programs, folders with programs, or `-` for standard input [default: this folder]
-    #[arg(value_name = "PATH")]
+    #[arg(value_name = "PATH", default_value = ".", hide_default_value = true)]
     paths: Vec<PathBuf>,
     /// Output format
     #[arg(long, value_enum, default_value_t, value_name = "FORMAT")]
@@ -88,8 +88,7 @@ pub(crate) enum Deny {
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let severities = Config::of_severities(options::severities(&arguments.severity)?);
     let options = severities.merged_over(Config::of_edition(arguments.edition));
-    let here = [PathBuf::from(".")];
-    let paths = if arguments.paths.is_empty() { &here } else { arguments.paths.as_slice() };
+    let paths = &arguments.paths;
     if arguments.watch {
         if arguments.format != Format::Human {
             return Err(Failure::new("--watch is for people: it cannot be used with another --format")
@@ -136,14 +135,10 @@ fn report(
 ) -> Result<String, Failure> {
     match format {
         Format::Human => Ok(human(inputs, diagnostics, scene_problems)),
-        Format::Json => written(json::array(inputs, diagnostics, scene_problems)),
-        Format::Sarif => written(sarif::log(inputs, diagnostics, scene_problems)),
+        Format::Json => json::array(inputs, diagnostics, scene_problems),
+        Format::Sarif => sarif::log(inputs, diagnostics, scene_problems),
         Format::Github => Ok(github::commands(inputs, diagnostics, scene_problems)),
     }
-}
-
-fn written(json: serde_json::Result<String>) -> Result<String, Failure> {
-    json.map(|json| json + "\n").map_err(|error| Failure::new(format!("cannot write JSON: {error}")))
 }
 
 fn human(inputs: &Inputs, diagnostics: &[Diagnostic], scene_problems: &[SceneProblem]) -> String {

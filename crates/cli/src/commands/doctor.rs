@@ -176,12 +176,7 @@ fn check_scene(
 
 /// Prints findings for people or programs; `all_well` if there is none.
 fn print(arguments: &Arguments, findings: &[Finding], all_well: &str) -> Result<(), Failure> {
-    if !arguments.json {
-        return output::print(&report(findings, all_well));
-    }
-    let json = serde_json::to_string_pretty(findings);
-    let json = json.map_err(|error| Failure::new(format!("cannot write JSON: {error}")))?;
-    output::print(&format!("{json}\n"))
+    output::print(&if arguments.json { output::json(findings)? } else { report(findings, all_well) })
 }
 
 fn exit_code(reached: bool, findings: &[Finding]) -> ExitCode {

@@ -29,7 +29,7 @@ const HELP: Help = Help {
 #[command(after_help = HELP.text())]
 pub(crate) struct Arguments {
     /// Programs, folders with programs, or `-` for standard input [default: this folder]
-    #[arg(value_name = "PATH")]
+    #[arg(value_name = "PATH", default_value = ".", hide_default_value = true)]
     paths: Vec<PathBuf>,
     /// Write nothing; say which programs would change, and end with exit code 1 if any would
     #[arg(long)]
@@ -66,9 +66,7 @@ impl Formatted {
 /// # Errors
 /// When nothing can be printed.
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    let here = [PathBuf::from(".")];
-    let paths = if arguments.paths.is_empty() { &here } else { arguments.paths.as_slice() };
-    let Found { programs, mut failures, .. } = read_programs(paths);
+    let Found { programs, mut failures, .. } = read_programs(&arguments.paths);
     let programs: Vec<Formatted> = programs.into_iter().map(Formatted::of).collect();
     let only_looks = arguments.check || arguments.diff;
     if arguments.diff {
@@ -118,15 +116,15 @@ fn write(programs: &[Formatted], failures: &mut Vec<Failure>) -> Result<(), Fail
 }
 
 fn listed(programs: &[Formatted]) -> String {
-    let mut names = String::new();
-    for program in programs.iter().filter(|program| program.changes()) {
-        names += &format!("would format {}\n", program.source.shown);
-    }
-    let changing = programs.iter().filter(|program| program.changes()).count();
-    match (changing, programs.len()) {
+    let changing = programs.iter().filter(|program| program.changes());
+    let names: Vec<String> =
+        changing.map(|program| format!("would format {}\n", program.source.shown)).collect();
+    match (names.len(), programs.len()) {
         (0, 0) => String::new(),
         (0, all) => format!("{} laid out already.\n", count(all, "file")),
-        _ => format!("{names}{} would be formatted; `pydslrep fmt` does it.\n", count(changing, "file")),
+        (some, _) => {
+            format!("{}{} would be formatted; `pydslrep fmt` does it.\n", names.concat(), count(some, "file"))
+        }
     }
 }
 

@@ -244,11 +244,7 @@ struct JsonPlan<'a> {
 struct JsonCollision<'a> {
     robot: &'a str,
     #[serde(flatten)]
-    action: JsonAction<'a>,
-    t: Option<f64>,
-    x: f64,
-    y: f64,
-    theta: f64,
+    pose: JsonPose<'a>,
     with: JsonCollisionTarget<'a>,
 }
 
@@ -303,7 +299,7 @@ struct JsonCall<'a> {
     action: usize,
 }
 
-/// The end of an action: seconds, metres, radians.
+/// Where a robot is at the end of an action, or during it: seconds, metres, radians.
 #[derive(Serialize)]
 struct JsonPose<'a> {
     #[serde(flatten)]
@@ -316,8 +312,7 @@ struct JsonPose<'a> {
 
 fn json(plans: &[PlannedEnvironment]) -> Result<String, Failure> {
     let plans: Vec<JsonPlan> = plans.iter().map(json_plan).collect();
-    let text = serde_json::to_string_pretty(&plans);
-    Ok(text.map_err(|error| Failure::new(format!("cannot write JSON: {error}")))? + "\n")
+    output::json(&plans)
 }
 
 fn json_plan(planned: &PlannedEnvironment) -> JsonPlan<'_> {
@@ -350,7 +345,7 @@ fn json_collision<'a>(planned: &'a PlannedEnvironment, collision: &Collision) ->
     let Pose { x, y, theta } = collision.pose;
     let action = json_action(planned, collision.action, &collision.place);
     let robot = object_name(&planned.scene, SceneObject::Robot(collision.robot));
-    JsonCollision { robot, action, t: collision.time, x, y, theta, with }
+    JsonCollision { robot, pose: JsonPose { action, t: collision.time, x, y, theta }, with }
 }
 
 fn json_pose<'a>(planned: &'a PlannedEnvironment, leg: &Leg) -> JsonPose<'a> {

@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
-use pydslrep_analysis::FileId;
 use pydslrep_config::Config;
 use pydslrep_server::FilePreview;
 
@@ -49,32 +48,24 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     if arguments.program == Path::new("-") {
         return Err(Failure::new("standard input cannot be followed").help("name a file"));
     }
-    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
-    let runtime = runtime.map_err(|error| unstarted(&error))?;
-    // The preview has a runtime of its own, which must not be dropped inside of this one.
+    // The preview has a runtime of its own, which must not be dropped inside of another one.
     let mut preview = start(arguments)?;
-    // Before anything is printed: a user who reads how to stop it may do so at once.
-    let interrupts = {
-        let _context = runtime.enter();
-        Interrupts::listen().map_err(|error| unstarted(&error))?
-    };
-    output::print(&format!("Path preview: {}\nPress Ctrl+C to stop.\n", preview.address()))?;
-    if !arguments.no_open
-        && let Err(error) = opener::open_browser(preview.address())
-    {
-        output::say(&format!("cannot open a browser: {error}\n"));
-    }
-    runtime.block_on(follow(arguments, &mut preview, interrupts))
-}
-
-fn unstarted(error: &dyn std::fmt::Display) -> Failure {
-    Failure::new(format!("cannot start the preview: {error}"))
+    interrupt::run("start the preview", async |interrupts| {
+        // Only now: a user who reads how to stop it may do so at once.
+        output::print(&format!("Path preview: {}\nPress Ctrl+C to stop.\n", preview.address()))?;
+        if !arguments.no_open
+            && let Err(error) = opener::open_browser(preview.address())
+        {
+            output::say(&format!("cannot open a browser: {error}\n"));
+        }
+        follow(arguments, &mut preview, interrupts).await
+    })
 }
 
 fn start(arguments: &Arguments) -> Result<FilePreview, Failure> {
     let (inputs, file) = Inputs::open_one(&arguments.program, &Config::default())?;
     let program = absolute(&arguments.program)?;
-    FilePreview::start(&program, text(&inputs, file), arguments.port).map_err(|error| {
+    FilePreview::start(&program, inputs.text(file), arguments.port).map_err(|error| {
         Failure::new(error.to_string()).help("choose another port, or leave out --port for any free one")
     })
 }
@@ -91,7 +82,7 @@ async fn follow(
         let scope = match Inputs::open_one(&arguments.program, &Config::default()) {
             Ok((inputs, file)) => {
                 let scope = scope(&arguments.program, &inputs)?;
-                preview.changed(text(&inputs, file), scope.files.iter().map(PathBuf::as_path));
+                preview.changed(inputs.text(file), scope.files.iter().map(PathBuf::as_path));
                 scope
             }
             // The program is being replaced, or its settings are wrong: the last path stays.
@@ -108,10 +99,6 @@ async fn follow(
         }
         watch.look_at(scope)?;
     }
-}
-
-fn text(inputs: &Inputs, file: FileId) -> String {
-    inputs.database().text(file).map(ToString::to_string).unwrap_or_default()
 }
 
 /// The files that the program depends on.

@@ -9,7 +9,7 @@ use std::time::Instant;
 use clap::Args;
 use pydslrep_analysis::environment::Robot;
 use pydslrep_config::{Config, Edition, Target};
-use pydslrep_output::{Kind, TemporaryFolder, check_outputs, provide_runtime, write_output};
+use pydslrep_output::{Kind, TemporaryFolder, check_outputs, write_output};
 use pydslrep_scene::Scene;
 use pydslrep_script::{file_name, generate};
 use pydslrep_simulator::{Options, Simulator};
@@ -206,8 +206,7 @@ fn perform(arguments: &Arguments, reporter: &mut Reporter) -> Result<ExitCode, F
     }
     let planned = PlannedEnvironment::new(environment, scene)?;
     let run = Run { arguments, reporter, target, home, simulated, map, planned };
-    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
-    let code = runtime.map_err(|error| unstarted(&error))?.block_on(run.drive(&name, &text))?;
+    let code = interrupt::run("start a run", async |interrupts| run.drive(&name, &text, interrupts).await)?;
     Ok(ExitCode::from(code))
 }
 
@@ -250,10 +249,6 @@ fn check_options(arguments: &Arguments, target: Target) -> Result<(), Failure> {
     }
 }
 
-fn unstarted(error: &dyn std::fmt::Display) -> Failure {
-    Failure::new(format!("cannot start a run: {error}"))
-}
-
 /// Returns the token of this run's clients: the name of its folder is unique.
 fn token(folder: &Path) -> String {
     let name = folder.file_name().unwrap_or_default().to_string_lossy();
@@ -274,8 +269,7 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    async fn drive(mut self, name: &str, text: &str) -> Result<u8, Failure> {
-        let mut interrupts = Interrupts::listen().map_err(|error| unstarted(&error))?;
+    async fn drive(mut self, name: &str, text: &str, mut interrupts: Interrupts) -> Result<u8, Failure> {
         if self.arguments.until_input_ends {
             interrupts = interrupts.with_end_of_input();
         }
@@ -286,13 +280,12 @@ impl Run<'_> {
                 return Ok(interrupt::EXIT_CODE);
             }
         };
-        let folder = TemporaryFolder::new("run-").map_err(|error| unstarted(&error))?;
+        let folder = TemporaryFolder::new("run-")
+            .map_err(|error| Failure::new(format!("cannot start a run: {error}")))?;
         if self.target == Target::VRep && self.needs_simulator() {
             vrep_client::prepare(&python, &self.home, folder.path()).await?;
         }
-        let runtime = python::cache().and_then(|cache| Ok(provide_runtime(&cache)?));
-        // Without a cache, the package is written for this run only.
-        let runtime = runtime.or_else(|_| provide_runtime(folder.path()))?;
+        let runtime = python::runtime(folder.path())?;
         let is_embedded = self.arguments.host.is_none() && self.needs_simulator() && !self.is_in_mujoco();
         let token = token(folder.path());
         let simulator = if is_embedded { Some(self.simulator(&token)?) } else { None };
@@ -383,10 +376,10 @@ impl Run<'_> {
     fn packages(&self) -> Packages {
         let odometry = self.arguments.odometry && exploring::explores(&self.planned.environment);
         match (self.is_in_mujoco(), odometry) {
-            (false, false) => Packages::Client,
-            (false, true) => Packages::ClientAndOdometry,
-            (true, false) => Packages::MuJoCo,
-            (true, true) => Packages::MuJoCoAndOdometry,
+            (false, false) => Packages::CLIENT,
+            (false, true) => Packages::CLIENT_AND_ODOMETRY,
+            (true, false) => Packages::MUJOCO,
+            (true, true) => Packages::MUJOCO_AND_ODOMETRY,
         }
     }
 

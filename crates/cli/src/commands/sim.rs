@@ -20,7 +20,7 @@ use crate::inputs::Inputs;
 use crate::inputs::program;
 use crate::options::{Engine, above_zero, server_parser};
 use crate::report::output;
-use crate::run::interrupt::{self, Interrupts};
+use crate::run::interrupt;
 use crate::run::ros2_world::{self, Node, World};
 use crate::run::trace_file::{self, TraceFile};
 
@@ -201,9 +201,7 @@ fn serve(
         server: arguments.server,
         ..Options::default()
     };
-    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
-    runtime.map_err(|error| unstarted(&error))?.block_on(async {
-        let mut interrupts = Interrupts::listen().map_err(|error| unstarted(&error))?;
+    interrupt::run("start the simulator", async |mut interrupts| {
         let simulator = Simulator::start(scene, &options).map_err(|error| Failure::new(error.to_string()))?;
         let mut node = match node.zip(token) {
             Some((choice, token)) => tokio::select! {
@@ -237,9 +235,7 @@ fn serve(
 
 /// Runs a node with `MuJoCo` in it until an interrupt.
 fn run_node(choice: &ros2_world::Choice<'_>, scene: &Scene, greeting: &str) -> Result<ExitCode, Failure> {
-    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
-    runtime.map_err(|error| unstarted(&error))?.block_on(async {
-        let mut interrupts = Interrupts::listen().map_err(|error| unstarted(&error))?;
+    interrupt::run("start the simulator", async |mut interrupts| {
         let mut node = tokio::select! {
             node = Node::start(choice, &scene.robots, World::MuJoCo(scene)) => node?,
             () = interrupts.next() => return Ok(()),
@@ -250,7 +246,7 @@ fn run_node(choice: &ros2_world::Choice<'_>, scene: &Scene, greeting: &str) -> R
             failure = node.ended() => return Err(failure),
         }
         node.stop().await;
-        Ok::<(), Failure>(())
+        Ok(())
     })?;
     Ok(ExitCode::from(interrupt::EXIT_CODE))
 }
@@ -304,8 +300,4 @@ fn next_steps(
 fn quoted(path: &Path) -> String {
     let path = path.display().to_string();
     if path.contains(char::is_whitespace) { format!("\"{path}\"") } else { path }
-}
-
-fn unstarted(error: &dyn std::fmt::Display) -> Failure {
-    Failure::new(format!("cannot start the simulator: {error}"))
 }

@@ -101,8 +101,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let runtime = lines_of_runtime();
     let stats = Stats { environments, total: Lines::new(in_program, in_python), runtime };
     if arguments.json {
-        let text = serde_json::to_string_pretty(&stats);
-        output::print(&(text.map_err(|error| Failure::new(format!("cannot write JSON: {error}")))? + "\n"))?;
+        output::print(&output::json(&stats)?)?;
     } else if !stats.environments.is_empty() {
         output::print(&table(&stats))?;
     }

@@ -152,6 +152,11 @@ impl Inputs {
         self.workspace.database()
     }
 
+    /// The text of a program.
+    pub(crate) fn text(&self, file: FileId) -> String {
+        self.database().text(file).map(ToString::to_string).unwrap_or_default()
+    }
+
     /// Returns the name of a program in output.
     pub(crate) fn shown(&self, file: FileId) -> &str {
         self.names.get(self.database().path(file)).map_or("", String::as_str)

@@ -6,6 +6,7 @@ use crate::inputs::Inputs;
 use crate::inputs::paths::with_slashes;
 use crate::inputs::scenes::{self, SceneProblem};
 use crate::report::place::{self, PlaceRange};
+use crate::report::with_advice;
 
 /// The problems as workflow commands, a line each.
 pub(crate) fn commands(
@@ -19,21 +20,13 @@ pub(crate) fn commands(
 
 fn of_scene(problem: &SceneProblem) -> String {
     let SceneProblem { shown, range, problem, .. } = problem;
-    let mut message = problem.message.clone();
-    if let Some(help) = &problem.help {
-        message += &format!("\nhelp: {help}");
-    }
+    let message = with_advice(&problem.message, problem.help.as_deref(), None);
     command(scenes::SEVERITY, shown, *range, problem.kind.code(), &message)
 }
 
 fn of_diagnostic(inputs: &Inputs, diagnostic: &Diagnostic) -> String {
     let range = place::range(inputs.database(), diagnostic.file, diagnostic.span);
-    let mut message = diagnostic.message.clone();
-    for (word, text) in [("help", &diagnostic.help), ("note", &diagnostic.note)] {
-        if let Some(text) = text {
-            message += &format!("\n{word}: {text}");
-        }
-    }
+    let message = with_advice(&diagnostic.message, diagnostic.help.as_deref(), diagnostic.note.as_deref());
     let (severity, file) = (diagnostic.severity, inputs.shown(diagnostic.file));
     command(severity, file, range, diagnostic.code(), &message)
 }

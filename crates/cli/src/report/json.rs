@@ -5,8 +5,10 @@ use std::borrow::Cow;
 use pydslrep_analysis::{Diagnostic, Edit, Fix, Related};
 use serde::Serialize;
 
+use crate::failure::Failure;
 use crate::inputs::Inputs;
 use crate::inputs::scenes::{self, SceneProblem};
+use crate::report::output;
 use crate::report::place::{self, PlaceRange};
 
 #[derive(Debug, Serialize)]
@@ -47,10 +49,10 @@ pub(crate) fn array(
     inputs: &Inputs,
     diagnostics: &[Diagnostic],
     scene_problems: &[SceneProblem],
-) -> serde_json::Result<String> {
+) -> Result<String, Failure> {
     let problems = diagnostics.iter().map(|diagnostic| problem(inputs, diagnostic));
     let problems: Vec<Problem> = problems.chain(scene_problems.iter().map(in_scene)).collect();
-    serde_json::to_string_pretty(&problems)
+    output::json(&problems)
 }
 
 fn problem<'a>(inputs: &'a Inputs, diagnostic: &'a Diagnostic) -> Problem<'a> {

@@ -11,3 +11,10 @@ pub(crate) mod place;
 pub(crate) mod render;
 pub(crate) mod sarif;
 pub(crate) mod summary;
+
+/// A message with its help and its note, for formats that have no place for them.
+fn with_advice(message: &str, help: Option<&str>, note: Option<&str>) -> String {
+    let advice = [("help", help), ("note", note)].into_iter();
+    let lines = advice.filter_map(|(word, text)| Some(format!("\n{word}: {}", text?)));
+    lines.fold(message.to_owned(), |text, line| text + &line)
+}

@@ -7,6 +7,7 @@ use std::io::{self, Write};
 use annotate_snippets::renderer::DecorStyle;
 use annotate_snippets::{Group, Level, Renderer};
 use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, LineStyle, Table, Width, presets};
+use serde::Serialize;
 use terminal_size::terminal_size;
 
 use crate::failure::Failure;
@@ -20,6 +21,15 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
     out.write_all(without_controls(text).as_bytes())
         .and_then(|()| out.flush())
         .map_err(|error| unprinted(&error))
+}
+
+/// A value as JSON with line breaks, to be printed.
+///
+/// # Errors
+/// If it has no form in JSON.
+pub(crate) fn json(value: &(impl Serialize + ?Sized)) -> Result<String, Failure> {
+    let text = serde_json::to_string_pretty(value);
+    Ok(text.map_err(|error| Failure::new(format!("cannot write JSON: {error}")))? + "\n")
 }
 
 /// Prints a user's text as it is: escape sequences in it stay.

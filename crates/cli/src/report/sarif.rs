@@ -2,14 +2,16 @@
 
 use percent_encoding::{AsciiSet, CONTROLS, utf8_percent_encode};
 use pydslrep_analysis::diagnostics::{CATALOGUE, Rule};
-use pydslrep_analysis::{Database, Diagnostic, Edit, FileId, Fix, Severity};
+use pydslrep_analysis::{Diagnostic, Edit, FileId, Fix, Severity};
 use pydslrep_syntax::Span;
 use serde_json::{Value, json};
 
+use crate::failure::Failure;
 use crate::inputs::Inputs;
 use crate::inputs::paths::with_slashes;
 use crate::inputs::scenes::{self, SceneProblem};
 use crate::report::place::{self, PlaceRange};
+use crate::report::{output, with_advice};
 
 const SCHEMA: &str = "https://json.schemastore.org/sarif-2.1.0.json";
 
@@ -40,10 +42,10 @@ pub(crate) fn log(
     inputs: &Inputs,
     diagnostics: &[Diagnostic],
     scene_problems: &[SceneProblem],
-) -> serde_json::Result<String> {
+) -> Result<String, Failure> {
     let results = diagnostics.iter().map(|diagnostic| result(inputs, diagnostic));
     let results: Vec<Value> = results.chain(scene_problems.iter().map(in_scene)).collect();
-    serde_json::to_string_pretty(&json!({
+    output::json(&json!({
         "$schema": SCHEMA,
         "version": "2.1.0",
         "runs": [{
@@ -78,12 +80,7 @@ fn level(severity: Severity) -> &'static str {
 }
 
 fn result(inputs: &Inputs, diagnostic: &Diagnostic) -> Value {
-    let mut text = diagnostic.message.clone();
-    for (word, more) in [("help", &diagnostic.help), ("note", &diagnostic.note)] {
-        if let Some(more) = more {
-            text += &format!("\n{word}: {more}");
-        }
-    }
+    let text = with_advice(&diagnostic.message, diagnostic.help.as_deref(), diagnostic.note.as_deref());
     let related = diagnostic.related.iter().enumerate().map(|(index, related)| {
         json!({
             "id": index + 1,
@@ -105,39 +102,31 @@ fn result(inputs: &Inputs, diagnostic: &Diagnostic) -> Value {
 /// These have no rule in the catalogue: it is about programs.
 fn in_scene(problem: &SceneProblem) -> Value {
     let SceneProblem { shown, range, problem, .. } = problem;
-    let mut text = problem.message.clone();
-    if let Some(help) = &problem.help {
-        text += &format!("\nhelp: {help}");
-    }
-    let place = json!({ "artifactLocation": { "uri": uri(shown) }, "region": region_of(*range) });
+    let text = with_advice(&problem.message, problem.help.as_deref(), None);
     json!({
         "ruleId": problem.kind.code(),
         "level": level(scenes::SEVERITY),
         "message": { "text": text },
-        "locations": [{ "physicalLocation": place }],
+        "locations": [{ "physicalLocation": physical(shown, *range) }],
     })
 }
 
 fn location(inputs: &Inputs, file: FileId, span: Span) -> Value {
-    json!({ "artifactLocation": artifact(inputs, file), "region": region(inputs.database(), file, span) })
+    physical(inputs.shown(file), place::range(inputs.database(), file, span))
+}
+
+fn physical(shown: &str, range: PlaceRange) -> Value {
+    json!({ "artifactLocation": { "uri": uri(shown) }, "region": region(range) })
 }
 
 /// From the first character to right after the last one, as everywhere here.
-fn region(database: &Database, file: FileId, span: Span) -> Value {
-    region_of(place::range(database, file, span))
-}
-
-fn region_of(range: PlaceRange) -> Value {
+fn region(range: PlaceRange) -> Value {
     json!({
         "startLine": range.start.line,
         "startColumn": range.start.column,
         "endLine": range.end.line,
         "endColumn": range.end.column,
     })
-}
-
-fn artifact(inputs: &Inputs, file: FileId) -> Value {
-    json!({ "uri": uri(inputs.shown(file)) })
 }
 
 /// A path as it is printed, as a URI: relative to the current folder where the path is.
@@ -160,7 +149,7 @@ fn fix(inputs: &Inputs, fix: &Fix) -> Value {
     let change = |file: FileId| {
         let edits = fix.edits.iter().filter(|edit| edit.file == file);
         json!({
-            "artifactLocation": artifact(inputs, file),
+            "artifactLocation": { "uri": uri(inputs.shown(file)) },
             "replacements": edits.map(|edit| replacement(inputs, edit)).collect::<Vec<_>>(),
         })
     };
@@ -172,7 +161,7 @@ fn fix(inputs: &Inputs, fix: &Fix) -> Value {
 
 fn replacement(inputs: &Inputs, edit: &Edit) -> Value {
     json!({
-        "deletedRegion": region(inputs.database(), edit.file, edit.span),
+        "deletedRegion": region(place::range(inputs.database(), edit.file, edit.span)),
         "insertedContent": { "text": edit.text },
     })
 }

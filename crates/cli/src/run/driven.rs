@@ -13,7 +13,7 @@ use pydslrep_trace::{Map, TraceRecord, Track};
 pub(crate) const FINENESS: f64 = 0.002;
 
 /// The path of each robot, in the order of the environment.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct Driven {
     robots: Vec<Robot>,
     tracks: Vec<Track>,
@@ -35,15 +35,7 @@ impl Driven {
     /// `simulated` are the indices of those in the embedded simulator.
     pub(crate) fn new(robots: &[Robot], simulated: Vec<usize>) -> Self {
         let tracks = vec![Track::new(FINENESS); robots.len()];
-        Self {
-            robots: robots.to_vec(),
-            tracks,
-            read: Sightings::default(),
-            time: 0.0,
-            sightings: Sightings::default(),
-            simulated,
-            maps: Vec::new(),
-        }
+        Self { robots: robots.to_vec(), tracks, simulated, ..Self::default() }
     }
 
     /// Adds the records of the simulator.

@@ -25,8 +25,7 @@ pub(crate) fn file(asked: Option<&Path>, environment: &Environment) -> PathBuf {
 pub(crate) fn arguments(scene: &Scene) -> Vec<OsString> {
     let mut all = Vec::new();
     for robot in &scene.robots {
-        let radius = robot.body.length.hypot(robot.body.width) / 2.0;
-        all.extend(["--radius".into(), format!("{}={radius}", robot.name).into()]);
+        all.extend(["--radius".into(), format!("{}={}", robot.name, robot.body.reach()).into()]);
         for sensor in &robot.sensors {
             let (name, mount) = (format!("{}.{}", robot.name, sensor.name), sensor.mount);
             all.extend(["--range".into(), format!("{name}={}", mount.range).into()]);

@@ -5,6 +5,8 @@ use std::thread;
 
 use tokio::sync::oneshot;
 
+use crate::failure::Failure;
+
 /// Receives interrupts. Before it exists, an interrupt ends the process at once.
 pub(crate) struct Interrupts {
     #[cfg(unix)]
@@ -27,13 +29,26 @@ pub(crate) struct Interrupts {
 /// The exit code after an interrupt.
 pub(crate) const EXIT_CODE: u8 = 130;
 
+/// Runs something that interrupts may end, in a runtime of its own. `what` it does is in the message if it cannot begin.
+///
+/// # Errors
+/// If the system does not allow it; and those of the work.
+pub(crate) fn run<T>(
+    what: &str,
+    work: impl AsyncFnOnce(Interrupts) -> Result<T, Failure>,
+) -> Result<T, Failure> {
+    let unstarted = |error: io::Error| Failure::new(format!("cannot {what}: {error}"));
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(unstarted)?;
+    runtime.block_on(async { work(Interrupts::listen().map_err(unstarted)?).await })
+}
+
 #[cfg(unix)]
 impl Interrupts {
     /// Starts to listen.
     ///
     /// # Errors
     /// If the system does not allow it.
-    pub(crate) fn listen() -> io::Result<Self> {
+    fn listen() -> io::Result<Self> {
         use tokio::signal::unix::{SignalKind, signal};
         let kinds =
             [SignalKind::interrupt(), SignalKind::terminate(), SignalKind::hangup(), SignalKind::quit()];
@@ -60,7 +75,7 @@ impl Interrupts {
     ///
     /// # Errors
     /// If the system does not allow it.
-    pub(crate) fn listen() -> io::Result<Self> {
+    fn listen() -> io::Result<Self> {
         use tokio::signal::windows;
         Ok(Self {
             ctrl_c: windows::ctrl_c()?,

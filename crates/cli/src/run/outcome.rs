@@ -81,12 +81,8 @@ impl Outcome<'_> {
                 let off = planned.relative(&driven);
                 Offset { distance: off.x.hypot(off.y), angle: off.theta.abs() }
             });
-            RobotFigures {
-                name: &robot.name,
-                planned: planned.map(End::from),
-                driven: driven.map(End::from),
-                off,
-            }
+            let (planned, driven) = (planned.map(End::from), driven.map(End::from));
+            RobotFigures { name: &robot.name, planned, driven, off }
         });
         Figures {
             environment: &self.planned.environment.name,

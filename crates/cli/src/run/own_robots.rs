@@ -5,7 +5,7 @@ use std::ffi::OsString;
 use pydslrep_analysis::environment::{Environment, Robot};
 
 use crate::failure::Failure;
-use crate::options::no_robot;
+use crate::options::check_robots;
 
 /// The value of `--robot`.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -49,10 +49,7 @@ impl OwnRobot {
 /// If a robot is named that the environment does not have.
 pub(crate) fn simulated(own: &[OwnRobot], environment: &Environment) -> Result<Vec<usize>, Failure> {
     let robots = &environment.robots;
-    let named = own.iter().filter_map(|choice| choice.robot.as_deref());
-    if let Some(unknown) = named.into_iter().find(|name| robots.iter().all(|robot| robot.name != *name)) {
-        return Err(no_robot(unknown, environment));
-    }
+    check_robots(own.iter().filter_map(|choice| choice.robot.as_deref()), environment)?;
     let is_simulated = |index: &usize| !own.iter().any(|choice| choice.drives(&robots[*index]));
     Ok((0..robots.len()).filter(is_simulated).collect())
 }

@@ -63,24 +63,18 @@ fn has_ending(path: &Path, ending: &str) -> bool {
 
 /// Checks the name of a picture at once, not after a long run.
 fn picture_path(name: &str) -> Result<PathBuf, String> {
-    let path = PathBuf::from(name);
-    match path.extension() {
-        Some(_) if !has_ending(&path, "svg") && !has_ending(&path, "png") => {
-            Err("pictures are SVG or PNG: use a name that ends in .svg or .png".to_owned())
-        }
-        _ => Ok(path),
-    }
+    path_with(name, &["svg", "png"], "pictures are SVG or PNG: use a name that ends in .svg or .png")
 }
 
 /// Checks the name of a replay.
 fn replay_path(name: &str) -> Result<PathBuf, String> {
+    path_with(name, &["svg"], "replays are animated SVG: use a name that ends in .svg")
+}
+
+fn path_with(name: &str, endings: &[&str], complaint: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(name);
-    match path.extension() {
-        Some(_) if !has_ending(&path, "svg") => {
-            Err("replays are animated SVG: use a name that ends in .svg".to_owned())
-        }
-        _ => Ok(path),
-    }
+    let fits = path.extension().is_none() || endings.iter().any(|ending| has_ending(&path, ending));
+    if fits { Ok(path) } else { Err(complaint.to_owned()) }
 }
 
 #[cfg(test)]

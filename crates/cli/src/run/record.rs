@@ -109,15 +109,7 @@ impl Record {
 
 /// A robot of which no more is known than its name or topic.
 fn nameless(name: &str) -> RobotTopics {
-    RobotTopics {
-        robot: name.to_owned(),
-        odometry: name.to_owned(),
-        localised: None,
-        plan: String::new(),
-        odometry_frame: String::new(),
-        base_frame: String::new(),
-        sensors: Vec::new(),
-    }
+    RobotTopics { robot: name.to_owned(), odometry: name.to_owned(), ..RobotTopics::default() }
 }
 
 /// A physical robot's clock shows the date.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use std::time::Duration;
 
-use pydslrep_output::{TemporaryFolder, provide_runtime};
+use pydslrep_output::TemporaryFolder;
 use pydslrep_scene::{Robot, Scene};
 use serde_json::{Value, json};
 use tokio::io::{AsyncBufReadExt, AsyncReadExt, BufReader};
@@ -71,8 +71,7 @@ impl Node {
     ) -> Result<Self, Failure> {
         let python = python::interpreter(choice.python).await?;
         let folder = TemporaryFolder::new("run-").map_err(|error| unstarted(&error))?;
-        let runtime = python::cache().and_then(|cache| Ok(provide_runtime(&cache)?));
-        let runtime = runtime.or_else(|_| provide_runtime(folder.path()))?;
+        let runtime = python::runtime(folder.path())?;
         let ports = match world {
             World::Embedded { ports, .. } => ports,
             World::MuJoCo(_) => &[],

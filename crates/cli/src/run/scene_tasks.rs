@@ -2,11 +2,11 @@
 //! as JSON in, its answer as JSON out.
 
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{ExitStatus, Output, Stdio};
 use std::time::Duration;
 
-use pydslrep_output::{TemporaryFolder, provide_runtime};
+use pydslrep_output::TemporaryFolder;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use tokio::io::{AsyncRead, AsyncReadExt, AsyncWriteExt};
@@ -14,7 +14,7 @@ use tokio::process::{Child, Command};
 use tokio::time::timeout;
 
 use crate::failure::Failure;
-use crate::run::interrupt::{Interrupts, interrupt_process};
+use crate::run::interrupt::{self, Interrupts, interrupt_process};
 use crate::run::python::{self, Packages, Watcher};
 use crate::run::reporter::Reporter;
 
@@ -64,19 +64,10 @@ pub(crate) fn carry_out<T: DeserializeOwned>(
     interpreter: Interpreter<'_>,
     request: &impl Serialize,
 ) -> Result<Option<T>, Failure> {
-    let watcher = Watcher { reporter: &Reporter::for_people(), quiet: interpreter.quiet };
-    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
-    let request = serde_json::to_vec(request).map_err(|error| unstarted(&error))?;
-    runtime.map_err(|error| unstarted(&error))?.block_on(async {
-        let mut interrupts = Interrupts::listen().map_err(|error| unstarted(&error))?;
-        let python = tokio::select! {
-            python = python::prepare(interpreter.chosen, Packages::Client, watcher) => python?,
-            () = interrupts.next() => return Ok(None),
-        };
-        let mut command = Command::new(python);
-        command.arg("-I");
-        result(command, SCENE_MODULE, &request, &mut interrupts).await
-    })
+    let reporter = Reporter::for_people();
+    let watcher = Watcher { reporter: &reporter, quiet: interpreter.quiet };
+    let python = python::prepare(interpreter.chosen, Packages::CLIENT, watcher);
+    carry_out_in(python, &["-I"], SCENE_MODULE, request)
 }
 
 /// Has a module carry out a task in the user's own Python, with what its environment adds to that; `None` if the user
@@ -89,15 +80,25 @@ pub(crate) fn carry_out_in_own_python<T: DeserializeOwned>(
     module: &str,
     request: &impl Serialize,
 ) -> Result<Option<T>, Failure> {
-    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
+    carry_out_in(python::interpreter(chosen), &[], module, request)
+}
+
+/// Has a module carry out a task in a Python with these options.
+fn carry_out_in<T: DeserializeOwned>(
+    python: impl Future<Output = Result<PathBuf, Failure>>,
+    options: &[&str],
+    module: &str,
+    request: &impl Serialize,
+) -> Result<Option<T>, Failure> {
     let request = serde_json::to_vec(request).map_err(|error| unstarted(&error))?;
-    runtime.map_err(|error| unstarted(&error))?.block_on(async {
-        let mut interrupts = Interrupts::listen().map_err(|error| unstarted(&error))?;
+    interrupt::run("start Python", async |mut interrupts| {
         let python = tokio::select! {
-            python = python::interpreter(chosen) => python?,
+            python = python => python?,
             () = interrupts.next() => return Ok(None),
         };
-        result(Command::new(python), module, &request, &mut interrupts).await
+        let mut command = Command::new(python);
+        command.args(options);
+        result(command, module, &request, &mut interrupts).await
     })
 }
 
@@ -108,9 +109,7 @@ async fn result<T: DeserializeOwned>(
     interrupts: &mut Interrupts,
 ) -> Result<Option<T>, Failure> {
     let folder = TemporaryFolder::new("run-").map_err(|error| unstarted(&error))?;
-    let runtime = python::cache().and_then(|cache| Ok(provide_runtime(&cache)?));
-    // Without a cache, the package is written for this task only.
-    let runtime = runtime.or_else(|_| provide_runtime(folder.path()))?;
+    let runtime = python::runtime(folder.path())?;
     command.args(["-X", "utf8", "-c", BOOT]).arg(&runtime).arg(module);
     let output = exchange(&mut command, request, interrupts).await.map_err(|error| unstarted(&error))?;
     let Some(output) = output else { return Ok(None) };

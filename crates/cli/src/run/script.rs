@@ -15,7 +15,7 @@ use tokio::time::{MissedTickBehavior, interval, timeout};
 
 use crate::failure::Failure;
 use crate::run::driven::Driven;
-use crate::run::interrupt::{self, Interrupts};
+use crate::run::interrupt::{self, Interrupts, interrupt_process};
 use crate::run::progress::Progress;
 use crate::run::reporter::Reporter;
 
@@ -253,13 +253,8 @@ impl Running {
             let _ = tokio::io::copy(&mut all.into_inner(), &mut tokio::io::sink()).await;
             String::from_utf8_lossy(&text).trim_end().to_owned()
         });
-        Ok(Self {
-            child,
-            lines: BufReader::new(stdout).lines(),
-            has_output: true,
-            stderr,
-            parent_pipe: Some(parent_pipe),
-        })
+        let lines = BufReader::new(stdout).lines();
+        Ok(Self { child, lines, has_output: true, stderr, parent_pipe: Some(parent_pipe) })
     }
 
     /// Returns its output on standard error, once it has ended.
@@ -272,24 +267,11 @@ impl Running {
     /// Asks the script to stop its robots and end; kills it if it does not. Further interrupts change nothing: a script that
     /// is killed leaves wheels turning.
     async fn stop(&mut self) {
-        self.interrupt();
+        interrupt_process(self.child.id());
+        #[cfg(not(unix))]
+        drop(self.parent_pipe.take());
         let _ = timeout(STOP_LIMIT, self.child.wait()).await;
         // An error means that it has ended already.
         let _ = self.child.kill().await;
-    }
-
-    #[cfg(unix)]
-    fn interrupt(&mut self) {
-        use rustix::process::{Pid, Signal, kill_process};
-        let pid = self.child.id().and_then(|id| i32::try_from(id).ok()).and_then(Pid::from_raw);
-        if let Some(pid) = pid {
-            // An error means that it has ended already.
-            let _ = kill_process(pid, Signal::INT);
-        }
-    }
-
-    #[cfg(not(unix))]
-    fn interrupt(&mut self) {
-        self.parent_pipe = None;
     }
 }

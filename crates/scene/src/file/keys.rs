@@ -388,14 +388,19 @@ const TEMPLATE: Values =
 const FRAME: Values = Values::Text("the name of a frame", r"^\S+$", frame);
 const TEXT: Values = Values::Text("a string", r"^[^/]*\S[^/]*$", name);
 
+/// A text that is its own canonical form, if it is valid.
+fn accepted(text: &str, is_valid: bool, complaint: &str) -> Result<String, Refusal> {
+    if is_valid { Ok(text.to_owned()) } else { Err(complaint.to_owned().into()) }
+}
+
 /// A path from the top of the scene, as in CoppeliaSim: `/PioneerP3DX/leftMotor`.
 fn path(text: &str) -> Result<String, Refusal> {
     let is_name = |name: &str| !name.trim().is_empty() && !name.contains(char::is_control);
-    match text.strip_prefix('/') {
-        Some(names) if names.split('/').all(is_name) => Ok(text.to_owned()),
-        _ => Err("must be a path of names, each after a `/`".to_owned().into()),
-    }
+    let is_path = text.strip_prefix('/').is_some_and(|names| names.split('/').all(is_name));
+    accepted(text, is_path, "must be a path of names, each after a `/`")
 }
+
+const NOT_A_TOPIC: &str = "must consist of letters, digits and `_`, with `/` between names";
 
 /// Names of topics, as ROS 2 takes them: letters, digits and `_`, none of which begins with a digit.
 fn is_topic(text: &str) -> bool {
@@ -407,15 +412,11 @@ fn is_topic(text: &str) -> bool {
 }
 
 fn topic(text: &str) -> Result<String, Refusal> {
-    if is_topic(text) { Ok(text.to_owned()) } else { Err(not_a_topic()) }
-}
-
-fn not_a_topic() -> Refusal {
-    "must consist of letters, digits and `_`, with `/` between names".to_owned().into()
+    accepted(text, is_topic(text), NOT_A_TOPIC)
 }
 
 fn template(text: &str) -> Result<String, Refusal> {
-    if is_topic(&text.replace("{sensor}", "sensor")) { Ok(text.to_owned()) } else { Err(not_a_topic()) }
+    accepted(text, is_topic(&text.replace("{sensor}", "sensor")), NOT_A_TOPIC)
 }
 
 /// In its canonical form, a namespace begins with `/`.
@@ -423,21 +424,17 @@ fn namespace(text: &str) -> Result<String, Refusal> {
     match text.strip_prefix('/').unwrap_or(text) {
         "" => Ok("/".to_owned()),
         name if is_topic(name) && !name.starts_with('/') => Ok(format!("/{name}")),
-        _ => Err(not_a_topic()),
+        _ => Err(NOT_A_TOPIC.to_owned().into()),
     }
 }
 
 fn frame(text: &str) -> Result<String, Refusal> {
-    if text.is_empty() || text.chars().any(|c| c.is_whitespace() || c.is_control()) {
-        return Err("must not be empty, and must not contain spaces".to_owned().into());
-    }
-    Ok(text.to_owned())
+    let is_valid = !text.is_empty() && !text.chars().any(|c| c.is_whitespace() || c.is_control());
+    accepted(text, is_valid, "must not be empty, and must not contain spaces")
 }
 
 /// Clients of the remote API address objects by paths with `/`.
 fn name(text: &str) -> Result<String, Refusal> {
-    if text.trim().is_empty() || text.contains('/') || text.chars().any(char::is_control) {
-        return Err("must not be empty, and must not contain `/` or line breaks".to_owned().into());
-    }
-    Ok(text.to_owned())
+    let is_valid = !text.trim().is_empty() && !text.contains('/') && !text.chars().any(char::is_control);
+    accepted(text, is_valid, "must not be empty, and must not contain `/` or line breaks")
 }

@@ -6,7 +6,7 @@ use ciborium::Value;
 use nalgebra::{Isometry3, Matrix3, Quaternion, Rotation3, Translation3, UnitQuaternion, Vector3};
 
 use super::arguments::{self, Arguments, Failure, Outcome};
-use super::calls::CallContext;
+use super::calls::{CallContext, undetected};
 use super::info;
 use super::objects::{Handle, Kind, Object};
 use super::parts::{Form, JointPart, PartKind, SensorPart, ShapePart};
@@ -144,8 +144,7 @@ pub(super) fn call_on_created(
             idle_joint(context, handle, joint, function, arguments)
         }
         ("readProximitySensor", PartKind::Sensor(_)) if context.objects.role(handle).is_none() => {
-            let nothing = || arguments::list([0.0; 3]);
-            Ok(vec![Value::from(-1), Value::from(0.0), nothing(), Value::from(-1), nothing()])
+            Ok(undetected(-1))
         }
         ("getFloatProperty", PartKind::Sensor(sensor)) if arguments.text(1) == Ok("volume_range") => {
             Ok(vec![(sensor.offset + sensor.range).into()])
@@ -207,7 +206,7 @@ fn create_proximity_sensor(context: &mut CallContext, arguments: &Arguments) -> 
     numbers::<8>(arguments, 3)?;
     let volume = numbers::<15>(arguments, 4)?;
     let (offset, range, angle) = (volume[0].max(0.0), volume[1].max(0.0), volume[9]);
-    let angle = angle.clamp(0.0, std::f64::consts::PI);
+    let angle = angle.clamp(0.0, PI);
     let sensor = SensorPart { subtype, offset, range, angle, size: volume[12].max(0.0) };
     create(context, arguments, PartKind::Sensor(sensor))
 }
@@ -303,13 +302,14 @@ fn put(context: &mut CallContext, arguments: &Arguments, handle: Handle, frame: 
     let missing = || arguments.failure(316, "object does not exist.");
     let parent = context.objects.get(handle).and_then(|object| object.parent);
     let frame_of = |base| context.objects.frame(base, context.world).ok_or_else(missing);
-    let in_world = match arguments.integer_or(2, info::HANDLE_WORLD)? {
-        info::HANDLE_WORLD | info::HANDLE_SCENE => *frame,
-        info::HANDLE_PARENT => match parent {
-            Some(parent) => frame_of(parent)? * frame,
-            None => *frame,
-        },
-        base => frame_of(base)? * frame,
+    let base = match arguments.integer_or(2, info::HANDLE_WORLD)? {
+        info::HANDLE_WORLD | info::HANDLE_SCENE => None,
+        info::HANDLE_PARENT => parent,
+        base => Some(base),
+    };
+    let in_world = match base {
+        Some(base) => frame_of(base)? * frame,
+        None => *frame,
     };
     let local = match parent {
         Some(parent) => frame_of(parent)?.inv_mul(&in_world),
@@ -322,15 +322,18 @@ fn put(context: &mut CallContext, arguments: &Arguments, handle: Handle, frame: 
 }
 
 fn position(arguments: &Arguments) -> Result<Vector3<f64>, Failure> {
-    numbers::<3>(arguments, 1).map(|at| Vector3::from(at.map(|along| along.clamp(-FAR, FAR))))
+    numbers(arguments, 1).map(within_reach)
+}
+
+fn within_reach(at: [f64; 3]) -> Vector3<f64> {
+    Vector3::from(at.map(|along| along.clamp(-FAR, FAR)))
 }
 
 fn pose(arguments: &Arguments) -> Result<Isometry3<f64>, Failure> {
     let [x, y, z, i, j, k, w] = numbers::<7>(arguments, 1)?;
     let rotation = UnitQuaternion::try_new(Quaternion::new(w, i, j, k), 1e-6);
     let rotation = rotation.ok_or_else(|| arguments.wrong_type())?;
-    let at = Vector3::new(x, y, z).map(|along| along.clamp(-FAR, FAR));
-    Ok(Isometry3::from_parts(Translation3::from(at), rotation))
+    Ok(Isometry3::from_parts(Translation3::from(within_reach([x, y, z])), rotation))
 }
 
 fn matrix(arguments: &Arguments) -> Result<Isometry3<f64>, Failure> {
@@ -342,8 +345,7 @@ fn matrix(arguments: &Arguments) -> Result<Isometry3<f64>, Failure> {
         return Err(arguments.wrong_type());
     }
     let rotation = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(rotation));
-    let at = Vector3::new(m[3], m[7], m[11]).map(|along| along.clamp(-FAR, FAR));
-    Ok(Isometry3::from_parts(Translation3::from(at), rotation))
+    Ok(Isometry3::from_parts(Translation3::from(within_reach([m[3], m[7], m[11]])), rotation))
 }
 
 fn script(context: &CallContext, arguments: &Arguments) -> Outcome {

@@ -72,11 +72,9 @@ pub(super) fn call(context: &mut CallContext, function: &str, arguments: &Argume
         "getObjectQuaternion" => context.frame(arguments).map(|frame| vec![arguments::quaternion(&frame)]),
         "getObjectUid" => context.object(arguments).map(|(handle, _)| vec![handle.into()]),
         "getObjectVelocity" => context.get_object_velocity(arguments),
-        "getJointPosition" => context.read_joint(arguments, World::angle).map(|angle| vec![angle.into()]),
-        "getJointVelocity" => context.read_joint(arguments, World::rate).map(|rate| vec![rate.into()]),
-        "getJointTargetVelocity" => {
-            context.read_joint(arguments, World::target).map(|rate| vec![rate.into()])
-        }
+        "getJointPosition" => context.read_joint(arguments, World::angle),
+        "getJointVelocity" => context.read_joint(arguments, World::rate),
+        "getJointTargetVelocity" => context.read_joint(arguments, World::target),
         "setJointTargetVelocity" => context.set_joint_target_velocity(arguments),
         "getJointMode" => {
             context.joint(arguments).map(|_| vec![info::JOINT_MODE_DYNAMIC.into(), Value::from(0)])
@@ -84,8 +82,11 @@ pub(super) fn call(context: &mut CallContext, function: &str, arguments: &Argume
         "getObjectInt32Param" => context.get_object_int_param(arguments),
         "setObjectInt32Param" => context.set_object_int_param(arguments),
         "getObjectFloatParam" => context.get_object_float_param(arguments),
-        "getFloatProperty" => context.get_float_property(arguments),
-        "getFloatArrayProperty" => context.get_float_array_property(arguments),
+        "getFloatProperty" => context.property(arguments, "volume_range", |mount| mount.range.into()),
+        // The opening angles of the cone and of the gap inside it.
+        "getFloatArrayProperty" => {
+            context.property(arguments, "volume_angle", |mount| arguments::list([mount.cone, 0.0]))
+        }
         "readProximitySensor" => context.read_proximity_sensor(arguments),
         "handleProximitySensor" => context.handle_proximity_sensor(arguments),
         "getInt32Param" => parameter(arguments, info::PARAM_PROGRAM_VERSION, info::PROGRAM_VERSION.into()),
@@ -101,6 +102,12 @@ pub(super) fn call(context: &mut CallContext, function: &str, arguments: &Argume
         "addLog" => arguments.integer(0).map(|_| vec![]),
         _ => return building::call(context, function, arguments),
     })
+}
+
+/// What a proximity sensor that detects nothing returns: a state, distance, point, handle, surface normal.
+pub(super) fn undetected(state: i64) -> Vec<Value> {
+    let nothing = || arguments::list([0.0; 3]);
+    vec![state.into(), Value::from(0.0), nothing(), Value::from(-1), nothing()]
 }
 
 /// The only readable parameter of a kind.
@@ -137,10 +144,10 @@ impl CallContext<'_> {
     fn get_object_alias(&self, arguments: &Arguments) -> Outcome {
         let (handle, _) = self.object(arguments)?;
         let alias = match arguments.integer_or(1, -1)? {
-            1 | 2 => self.objects.path(handle),
-            _ => self.objects.get(handle).map(|object| object.alias.clone()),
+            1 | 2 => self.objects.path(handle).unwrap_or_default(),
+            _ => self.objects.alias(handle),
         };
-        Ok(vec![alias.unwrap_or_default().into()])
+        Ok(vec![alias.into()])
     }
 
     fn get_object_parent(&self, arguments: &Arguments) -> Outcome {
@@ -207,11 +214,18 @@ impl CallContext<'_> {
 
     /// A joint of any kind, as the first argument.
     pub(super) fn joint_object(&self, arguments: &Arguments) -> Result<Handle, arguments::Failure> {
+        self.object_of_type(arguments, info::TYPE_JOINT, "object is not a joint.")
+    }
+
+    fn object_of_type(
+        &self,
+        arguments: &Arguments,
+        number: i64,
+        otherwise: &str,
+    ) -> Result<Handle, arguments::Failure> {
         let (handle, _) = self.object(arguments)?;
-        match self.objects.get(handle).map(Object::type_number) {
-            Some(info::TYPE_JOINT) => Ok(handle),
-            _ => Err(arguments.failure(316, "object is not a joint.")),
-        }
+        let is_one = self.objects.get(handle).map(Object::type_number) == Some(number);
+        if is_one { Ok(handle) } else { Err(arguments.failure(316, otherwise)) }
     }
 
     pub(super) fn joint(&self, arguments: &Arguments) -> Result<WheelJoint, arguments::Failure> {
@@ -234,13 +248,9 @@ impl CallContext<'_> {
     }
 
     /// A rate or angle of a wheel about its joint's own axis.
-    fn read_joint(
-        &self,
-        arguments: &Arguments,
-        read: fn(&World, usize, usize) -> f64,
-    ) -> Result<f64, arguments::Failure> {
+    fn read_joint(&self, arguments: &Arguments, read: fn(&World, usize, usize) -> f64) -> Outcome {
         let WheelJoint { robot, wheel, axis_sign } = self.joint(arguments)?;
-        Ok(axis_sign * read(self.world, robot, wheel))
+        Ok(vec![(axis_sign * read(self.world, robot, wheel)).into()])
     }
 
     fn set_joint_target_velocity(&mut self, arguments: &Arguments) -> Outcome {
@@ -282,25 +292,16 @@ impl CallContext<'_> {
         if self.joint_of(handle).is_none() || parameter != info::PARAM_VELOCITY {
             return Ok(vec![]);
         }
-        self.read_joint(arguments, World::rate).map(|rate| vec![rate.into()])
+        self.read_joint(arguments, World::rate)
     }
 
-    /// The range of a proximity sensor.
-    fn get_float_property(&self, arguments: &Arguments) -> Outcome {
+    /// The only property of a kind that a proximity sensor has.
+    fn property(&self, arguments: &Arguments, known: &str, value: fn(Mount) -> Value) -> Outcome {
         let mount = self.mount(arguments)?;
-        match arguments.text(1)? {
-            "volume_range" => Ok(vec![mount.range.into()]),
-            _ => Err(arguments.failure(316, "unknown property.")),
+        if arguments.text(1)? == known {
+            return Ok(vec![value(mount)]);
         }
-    }
-
-    /// The opening angles of a proximity sensor's cone and of the gap inside it.
-    fn get_float_array_property(&self, arguments: &Arguments) -> Outcome {
-        let mount = self.mount(arguments)?;
-        match arguments.text(1)? {
-            "volume_angle" => Ok(vec![arguments::list([mount.cone, 0.0])]),
-            _ => Err(arguments.failure(316, "unknown property.")),
-        }
+        Err(arguments.failure(316, "unknown property."))
     }
 
     fn mount(&self, arguments: &Arguments) -> Result<Mount, arguments::Failure> {
@@ -310,21 +311,16 @@ impl CallContext<'_> {
         robot.sensors.get(sensor).map(|sensor| sensor.mount).ok_or_else(unknown)
     }
 
-    fn sensor(&self, arguments: &Arguments) -> Result<Handle, arguments::Failure> {
-        let (handle, _) = self.object(arguments)?;
-        match self.objects.get(handle).map(Object::type_number) {
-            Some(info::TYPE_SENSOR) => Ok(handle),
-            _ => Err(arguments.failure(316, "object is not a proximity sensor.")),
-        }
+    /// A proximity sensor of any kind, as the first argument.
+    pub(super) fn sensor(&self, arguments: &Arguments) -> Result<Handle, arguments::Failure> {
+        self.object_of_type(arguments, info::TYPE_SENSOR, "object is not a proximity sensor.")
     }
 
     /// State, distance, point, handle of the detected object, surface normal.
     fn read_proximity_sensor(&mut self, arguments: &Arguments) -> Outcome {
         let handle = self.sensor(arguments)?;
-        let nothing = || arguments::list([0.0; 3]);
         let Some(seen) = self.detected(handle) else {
-            let state = if self.has_handled_sensors() { 0 } else { -1 };
-            return Ok(vec![Value::from(state), Value::from(0.0), nothing(), Value::from(-1), nothing()]);
+            return Ok(undetected(if self.has_handled_sensors() { 0 } else { -1 }));
         };
         let (point, normal) = (arguments::vector(seen.point), arguments::vector(seen.normal));
         Ok(vec![Value::from(1), seen.distance.into(), point, seen.handle.into(), normal])

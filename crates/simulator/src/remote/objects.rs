@@ -9,7 +9,7 @@ use pydslrep_kinematics::Pose;
 use pydslrep_scene::{Frame, Scene, SceneObject};
 
 use super::info;
-use super::parts::{Part, PartKind};
+use super::parts::{Part, PartKind, ShapePart};
 use super::recognition::{Recognized, recognize};
 use super::sight;
 use crate::World;
@@ -196,6 +196,19 @@ impl Objects {
         self.get(handle)?.part.as_deref()
     }
 
+    /// The created shape of a handle.
+    pub(super) fn shape(&self, handle: Handle) -> Option<&ShapePart> {
+        match &self.part(handle)?.kind {
+            PartKind::Shape(shape) => Some(shape),
+            _ => None,
+        }
+    }
+
+    /// The name of an object; empty if there is none.
+    pub(super) fn alias(&self, handle: Handle) -> String {
+        self.get(handle).map(|object| object.alias.clone()).unwrap_or_default()
+    }
+
     /// Returns the description of a created object, to change it.
     pub(super) fn part_mut(&mut self, handle: Handle) -> Option<&mut Part> {
         let part = self.all.get_mut(&handle)?.part.as_deref_mut()?;
@@ -236,7 +249,7 @@ impl Objects {
     /// All objects below another one.
     pub(super) fn below(&self, handle: Handle) -> Vec<Handle> {
         let all = self.iter().map(|(other, _)| other);
-        all.filter(|&other| self.is_below(other, Some(handle))).collect()
+        all.filter(|&other| self.ancestors(other).contains(&handle)).collect()
     }
 
     /// Returns the role of a created object in the simulated world, if it has one.
@@ -326,12 +339,7 @@ impl Objects {
     }
 
     fn depth(&self, handle: Handle) -> usize {
-        let parent = |&handle: &Handle| self.get(handle).and_then(|object| object.parent);
-        iter::successors(Some(handle), parent).count()
-    }
-
-    fn is_below(&self, handle: Handle, root: Option<Handle>) -> bool {
-        root.is_none_or(|root| self.ancestors(handle).contains(&root))
+        self.ancestors(handle).len() + 1
     }
 
     /// The full path of an object, such as `/robot_1/wheelL`; objects of the same name and parent have an index.

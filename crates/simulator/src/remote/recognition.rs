@@ -5,8 +5,8 @@
 //! that collide and rise above the floor.
 
 use nalgebra::{Isometry3, Vector2, Vector3};
-use pydslrep_kinematics::{Drive, Geometry, Pose};
-use pydslrep_scene::{Body, Mount, Obstacle, Robot, Scene, SensorKind, Shape, Wheel, defaults};
+use pydslrep_kinematics::{Drive, Pose};
+use pydslrep_scene::{Body, Mount, Obstacle, Robot, Scene, SensorKind, Shape, Wheel, geometry_of};
 
 use super::info;
 use super::objects::{Handle, Kind, Objects, planar};
@@ -34,7 +34,7 @@ pub(super) struct Recognized {
 pub(super) fn recognize(objects: &Objects, program: &Scene) -> Recognized {
     let mut found = Recognized { scene: program.clone(), roles: Vec::new(), offsets: Vec::new() };
     for handle in objects.made() {
-        let Some(shape) = shape_of(objects, handle) else { continue };
+        let Some(shape) = objects.shape(handle) else { continue };
         if shape.is_static {
             add_obstacle(objects, handle, shape, &mut found);
         } else if found.scene.robots.len() < program.robots.len() + MAX_ROBOTS {
@@ -44,13 +44,6 @@ pub(super) fn recognize(objects: &Objects, program: &Scene) -> Recognized {
     // A client that creates a scene gives the positions itself.
     found.scene.collisions |= !found.roles.is_empty();
     found
-}
-
-fn shape_of(objects: &Objects, handle: Handle) -> Option<&ShapePart> {
-    match &objects.part(handle)?.kind {
-        PartKind::Shape(shape) => Some(shape),
-        _ => None,
-    }
 }
 
 fn is_joint(objects: &Objects, handle: Handle) -> bool {
@@ -66,7 +59,7 @@ struct FoundWheel {
 
 fn add_robot(objects: &Objects, body: Handle, shape: &ShapePart, found: &mut Recognized) {
     let above = objects.ancestors(body);
-    if above.iter().any(|&above| shape_of(objects, above).is_some_and(|shape| !shape.is_static)) {
+    if above.iter().any(|&above| objects.shape(above).is_some_and(|shape| !shape.is_static)) {
         // It is a part of the robot above.
         return;
     }
@@ -85,26 +78,19 @@ fn add_robot(objects: &Objects, body: Handle, shape: &ShapePart, found: &mut Rec
     }
     let positions: Vec<Vector3<f64>> = wheels.iter().map(on_floor).collect();
     let count = if half == 1 { 2.0 } else { 4.0 };
-    let middle = positions.iter().sum::<Vector3<f64>>() / count;
-    let mean = |some: &[usize], axis: usize| -> f64 {
-        let share = if some.len() == 1 { 1.0 } else { 0.5 };
-        some.iter().map(|&index| positions[index][axis]).sum::<f64>() * share
-    };
-    let (left, right): (Vec<usize>, Vec<usize>) = (0..wheels.len()).partition(|&index| index < half);
-    let wheelbase =
-        if half == 1 { defaults::GEOMETRY.wheelbase } else { mean(&[0, 2], 0) - mean(&[1, 3], 0) };
-    let geometry = Geometry { track: mean(&left, 1) - mean(&right, 1), wheelbase };
-    if geometry.track <= 0.0 || wheelbase <= 0.0 {
+    let places: Vec<(f64, f64)> = positions.iter().map(|at| (at.x, at.y)).collect();
+    let geometry = geometry_of(drive, &places);
+    if geometry.track <= 0.0 || geometry.wheelbase <= 0.0 {
         return;
     }
-    let middle = turned * middle;
+    let middle = turned * (positions.iter().sum::<Vector3<f64>>() / count);
     let start = Pose::new(middle.x, middle.y, heading);
     let origin = planar(start, 0.0);
-    let name = objects.get(body).map(|object| object.alias.clone()).unwrap_or_default();
+    let name = objects.alias(body);
     let parts: Vec<Wheel> = wheels
         .iter()
         .map(|wheel| Wheel {
-            name: objects.get(wheel.handle).map(|object| object.alias.clone()).unwrap_or_default(),
+            name: objects.alias(wheel.handle),
             radius: wheel.radius,
             mirrored: (origin.inverse() * wheel.frame * Vector3::z()).y < 0.0,
         })
@@ -116,7 +102,7 @@ fn add_robot(objects: &Objects, body: Handle, shape: &ShapePart, found: &mut Rec
     robot.body = outline(&(origin.inverse() * frame), &shape.form);
     for &sensor in &below {
         let Some(mount) = mount(objects, sensor, &origin) else { continue };
-        let name = objects.get(sensor).map(|object| object.alias.clone()).unwrap_or_default();
+        let name = objects.alias(sensor);
         found.roles.push((sensor, Kind::Sensor { robot: index, sensor: robot.sensors.len() }));
         robot.sensors.push(pydslrep_scene::Sensor { name, kind: SensorKind::Distance, mount });
     }
@@ -139,7 +125,7 @@ fn wheel(objects: &Objects, body: Handle, joint: Handle) -> Option<FoundWheel> {
     let frame = objects.rest_frame(joint)?;
     let below = objects.below(joint);
     let reach = |&shape: &Handle| -> Option<f64> {
-        let part = shape_of(objects, shape).filter(|shape| !shape.is_static && shape.is_respondable)?;
+        let part = objects.shape(shape).filter(|shape| !shape.is_static && shape.is_respondable)?;
         let middle = (frame.inverse() * objects.rest_frame(shape)?).translation.vector;
         Some(middle.xy().norm() + part.form.size().max() / 2.0)
     };
@@ -183,7 +169,7 @@ fn add_obstacle(objects: &Objects, handle: Handle, shape: &ShapePart, found: &mu
     if top_of(&frame, &shape.form) <= FLOOR {
         return;
     }
-    let name = objects.get(handle).map(|object| object.alias.clone()).unwrap_or_default();
+    let name = objects.alias(handle);
     for (pose, shape) in outlines(&frame, &shape.form) {
         if found.scene.obstacles.len() < MAX_OBSTACLES {
             found.roles.push((handle, Kind::Obstacle(found.scene.obstacles.len())));

@@ -207,7 +207,7 @@ impl Session {
     /// Returns whether the simulation runs freely: no client steps it.
     pub fn is_free_running(&self) -> bool {
         let nobody_steps = self.clients.values().all(|client| client.level == 0)
-            && !self.legacy.values().any(LegacyClient::is_synchronous);
+            && !self.legacy.values().any(|client| client.synchronous);
         self.state == State::Running && nobody_steps
     }
 
@@ -393,13 +393,9 @@ impl Session {
                 return Err(Failure("too many clients on one connection".to_owned()));
             }
         }
-        let client = self.clients.entry(request.uuid.clone()).or_insert(Client {
-            connection,
-            last_seen: now,
-            timeout: DEFAULT_TIMEOUT,
-            level: 0,
-            step_request: None,
-        });
+        let new =
+            Client { connection, last_seen: now, timeout: DEFAULT_TIMEOUT, level: 0, step_request: None };
+        let client = self.clients.entry(request.uuid.clone()).or_insert(new);
         client.connection = connection;
         client.last_seen = now;
         client.timeout = request.timeout.unwrap_or(client.timeout);
@@ -513,8 +509,8 @@ impl Session {
             client.step_request.as_ref().is_some_and(|step_request| step_request.steps > steps)
         };
         let stepping = self.clients.values().filter(|client| client.level > 0).map(asks);
-        let triggering = self.legacy.values().filter(|client| client.is_synchronous());
-        let mut joined = stepping.chain(triggering.map(LegacyClient::has_triggered)).peekable();
+        let triggering = self.legacy.values().filter(|client| client.synchronous);
+        let mut joined = stepping.chain(triggering.map(|client| client.triggered)).peekable();
         let may = self.state == State::Running && self.allowance != Some(0);
         if may && joined.peek().is_some() && joined.all(|asks| asks) {
             self.allowance = self.allowance.map(|left| left.saturating_sub(1));

@@ -6,10 +6,10 @@ use pydslrep_kinematics::Pose;
 use pydslrep_scene::{Mount, Obstacle, Scene, Space};
 
 use super::arguments::{self, Arguments, Outcome};
-use super::calls::CallContext;
+use super::calls::{CallContext, undetected};
 use super::info;
-use super::objects::{Handle, Kind, Object, Objects};
-use super::parts::{Form, PartKind, ShapePart};
+use super::objects::{Handle, Kind, Objects};
+use super::parts::{Form, PartKind};
 use super::recognition::{FLOOR, outlines, top_of};
 use crate::World;
 
@@ -36,17 +36,14 @@ pub(super) struct Seen {
 /// detectable or not. Of a program's own objects, it sees obstacles.
 pub(super) fn check(context: &CallContext, arguments: &Arguments) -> Outcome {
     let (handle, other) = (context.object(arguments)?.0, arguments.integer(1)?);
-    if context.objects.get(handle).map(Object::type_number) != Some(info::TYPE_SENSOR) {
-        return Err(arguments.failure(316, "object is not a proximity sensor."));
-    }
+    context.sensor(arguments)?;
     if context.objects.get(other).is_none() {
         return Err(arguments.failure(316, "object does not exist."));
     }
     let sensor = sensor(context.objects, context.world, handle);
     let seen = sensor.as_ref().and_then(|sensor| sight_of(context, sensor, other));
     let Some((sensor, seen)) = sensor.zip(seen) else {
-        let nothing = || arguments::list([0.0; 3]);
-        return Ok(vec![Value::from(0), Value::from(0.0), nothing(), Value::from(-1), nothing()]);
+        return Ok(undetected(0));
     };
     let point = sensor.frame.inverse_transform_point(&seen.point).coords;
     let normal = sensor.frame.inverse_transform_vector(&seen.normal);
@@ -61,7 +58,7 @@ pub(super) fn nearest_floor(objects: &Objects, world: &World, handle: Handle) ->
     }
     let sensor = sensor(objects, world, handle)?;
     let seen = objects.floors().iter().filter_map(|&floor| {
-        let shape = shape_of(objects, floor)?;
+        let shape = objects.shape(floor)?;
         Some((floor, sensor.floor(&objects.rest_frame(floor)?, &shape.form)?))
     });
     seen.min_by(|(_, a), (_, b)| a.distance.total_cmp(&b.distance))
@@ -70,15 +67,8 @@ pub(super) fn nearest_floor(objects: &Objects, world: &World, handle: Handle) ->
 /// Returns whether a created object is a floor that sensors see.
 pub(super) fn is_detectable_floor(objects: &Objects, handle: Handle) -> bool {
     let is_detectable = objects.part(handle).is_some_and(|part| part.special & info::SPECIAL_DETECTABLE != 0);
-    let shape = shape_of(objects, handle).filter(|shape| shape.is_static && is_detectable);
+    let shape = objects.shape(handle).filter(|shape| shape.is_static && is_detectable);
     shape.zip(objects.rest_frame(handle)).is_some_and(|(shape, frame)| top_of(&frame, &shape.form) <= FLOOR)
-}
-
-fn shape_of(objects: &Objects, handle: Handle) -> Option<&ShapePart> {
-    match &objects.part(handle)?.kind {
-        PartKind::Shape(shape) => Some(shape),
-        _ => None,
-    }
 }
 
 fn sensor(objects: &Objects, world: &World, handle: Handle) -> Option<Sensor> {
@@ -96,7 +86,7 @@ fn sensor(objects: &Objects, world: &World, handle: Handle) -> Option<Sensor> {
 }
 
 fn sight_of(context: &CallContext, sensor: &Sensor, other: Handle) -> Option<Seen> {
-    if let Some(shape) = shape_of(context.objects, other) {
+    if let Some(shape) = context.objects.shape(other) {
         let frame = context.objects.frame(other, context.world)?;
         if top_of(&frame, &shape.form) <= FLOOR {
             return sensor.floor(&frame, &shape.form);

@@ -32,9 +32,8 @@ impl Surroundings<'_> {
     /// The distance to the nearest obstacle or robot, at most `within`.
     fn clearance(&self, body: Body, pose: Pose, within: f64) -> f64 {
         let obstacle = self.space.nearest(body, pose, within).map_or(within, |near| near.distance);
-        let radius = |body: Body| body.length.hypot(body.width) / 2.0;
         self.others.iter().fold(obstacle, |nearest, &(other, at)| {
-            if pose.distance(&at) - radius(body) - radius(other) > nearest {
+            if pose.distance(&at) - body.reach() - other.reach() > nearest {
                 return nearest;
             }
             nearest.min(distance_between((body, pose), (other, at)))
@@ -73,8 +72,7 @@ impl Surroundings<'_> {
 
     /// The pose of a body moving with a constant twist until a contact, and the remaining time.
     fn move_freely(&self, body: Body, from: Pose, twist: Twist, seconds: f64) -> (Pose, f64) {
-        let reach = body.length.hypot(body.width) / 2.0;
-        let speed = twist.vx.hypot(twist.vy) + twist.omega.abs() * reach;
+        let speed = twist.vx.hypot(twist.vy) + twist.omega.abs() * body.reach();
         if speed * seconds <= 0.0 {
             return (from, 0.0);
         }

@@ -94,13 +94,8 @@ impl Mover {
         for (robot, bystander) in robots.iter().enumerate() {
             let Some(before) = self.contacts.get(robot).copied() else { continue };
             let struck = if before == Contact::Apart { self.meeting(bystander, from, to) } else { None };
-            strikes.extend(struck.map(|time| Strike {
-                time,
-                robot,
-                pose: bystander.pose,
-                obstacle: self.obstacle,
-                was_driving: bystander.is_driving,
-            }));
+            let (pose, obstacle, was_driving) = (bystander.pose, self.obstacle, bystander.is_driving);
+            strikes.extend(struck.map(|time| Strike { time, robot, pose, obstacle, was_driving }));
             let distance = self.distance(bystander, to, APART);
             self.contacts[robot] = match distance {
                 _ if before == Contact::Apart && struck.is_none() => Contact::Apart,

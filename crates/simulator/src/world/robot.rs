@@ -45,12 +45,9 @@ impl RobotState {
         if !can_speed_up || robot.motor_speed.is_nan() || robot.motor_speed <= 0.0 {
             return Err(WorldError::Motor { robot: robot.name.clone() });
         }
-        let joint = |wheel| Joint {
-            target: 0.0,
-            rate: 0.0,
-            angle: 0.0,
-            released: false,
-            slip: Slip::new(scene.noise, scene.seed, index, wheel),
+        let joint = |wheel| {
+            let slip = Slip::new(scene.noise, scene.seed, index, wheel);
+            Joint { target: 0.0, rate: 0.0, angle: 0.0, released: false, slip }
         };
         let joints = (0..model.settable().rates).map(joint).collect();
         let (track_error, radius_error) =

@@ -28,16 +28,10 @@ pub(super) fn run(paths: &[PathBuf], options: &Config) -> Result<ExitCode, Failu
     if paths.iter().any(|path| path == Path::new("-")) {
         return Err(Failure::new("standard input cannot be watched").help("name a file or a folder"));
     }
-    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
-    runtime.map_err(|error| unstarted(&error))?.block_on(watch(paths, options))
+    interrupt::run("watch for changes", async |interrupts| watch(paths, options, interrupts).await)
 }
 
-fn unstarted(error: &dyn std::fmt::Display) -> Failure {
-    Failure::new(format!("cannot watch for changes: {error}"))
-}
-
-async fn watch(paths: &[PathBuf], options: &Config) -> Result<ExitCode, Failure> {
-    let mut interrupts = Interrupts::listen().map_err(|error| unstarted(&error))?;
+async fn watch(paths: &[PathBuf], options: &Config, mut interrupts: Interrupts) -> Result<ExitCode, Failure> {
     let mut watch = Watch::new();
     watch.look_at(scope(paths, &Inputs::default())?)?;
     let mut shown = None;

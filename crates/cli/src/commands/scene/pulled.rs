@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use pydslrep_kinematics::{Drive, heading_degrees};
+use pydslrep_scene::geometry_of;
 use pydslrep_syntax::escape;
 use serde::Deserialize;
 
@@ -193,18 +194,13 @@ fn robot_table(text: &mut String, robot: &Robot) {
         heading(robot.heading),
         pair([robot.length, robot.width]),
     );
-    let half = robot.wheels.len() / 2;
-    let mean = |wheels: &[&Wheel], of: fn(&Wheel) -> f64| {
-        wheels.iter().map(|wheel| of(wheel)).sum::<f64>() / if wheels.len() == 1 { 1.0 } else { 2.0 }
-    };
-    let (left, right): (Vec<&Wheel>, Vec<&Wheel>) =
-        (robot.wheels.iter().take(half).collect(), robot.wheels.iter().skip(half).collect());
-    let _ =
-        writeln!(text, "track = {}", number(mean(&left, |wheel| wheel.y) - mean(&right, |wheel| wheel.y)));
-    if let [left_front, left_rear, right_front, right_rear] = robot.wheels.as_slice() {
-        let wheelbase = mean(&[left_front, right_front], |wheel| wheel.x)
-            - mean(&[left_rear, right_rear], |wheel| wheel.x);
-        let _ = writeln!(text, "wheelbase = {}", number(wheelbase));
+    if let Some(drive) = Drive::from_word(&robot.drive) {
+        let places: Vec<(f64, f64)> = robot.wheels.iter().map(|wheel| (wheel.x, wheel.y)).collect();
+        let geometry = geometry_of(drive, &places);
+        let _ = writeln!(text, "track = {}", number(geometry.track));
+        if drive.row().has_wheelbase() {
+            let _ = writeln!(text, "wheelbase = {}", number(geometry.wheelbase));
+        }
     }
     let _ = writeln!(text, "grip = {}", number(robot.grip));
     if let Some(speed) = robot.rim_speed {

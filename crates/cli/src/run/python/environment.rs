@@ -46,7 +46,7 @@ impl Environment {
     /// The environment of an interpreter. A change of the interpreter or of the requirements makes another one.
     pub(super) fn new(base: Interpreter, packages: Packages, cache: PathBuf) -> Self {
         let mut hasher = DefaultHasher::new();
-        (packages.requirements(), &base.version, &base.path).hash(&mut hasher);
+        (packages.requirements.concat(), &base.version, &base.path).hash(&mut hasher);
         let home = cache.join(format!("venv-{:016x}", hasher.finish()));
         Self { base, packages, cache, home }
     }
@@ -81,7 +81,7 @@ impl Environment {
     /// Where its packages are, or when they will be there.
     pub(super) fn describe(&self) -> String {
         match self.state() {
-            State::Missing => format!("not there yet: {} installs it", self.packages.first_run()),
+            State::Missing => format!("not there yet: {} installs it", self.packages.first_run),
             State::Sound => format!("in {}", self.home.display()),
             State::Damaged(reason) => {
                 format!(
@@ -143,9 +143,9 @@ impl Environment {
                 self.base.path.display()
             ))
         })?;
-        self.show(steps, &format!("installing {}", self.packages.names()));
+        self.show(steps, &format!("installing {}", self.packages.names));
         let requirements = folder.path().join("requirements.txt");
-        fs::write(&requirements, self.packages.requirements())
+        fs::write(&requirements, self.packages.requirements.concat())
             .map_err(|error| uncached(&requirements, &error))?;
         let mut pip = Command::new(python_in(folder.path()));
         pip.args(["-I", "-m", "pip", "install", "--quiet", "--no-input", "--disable-pip-version-check"]);
@@ -159,7 +159,7 @@ impl Environment {
     }
 
     fn show(&self, steps: &Steps<'_>, step: &str) {
-        steps.show(&format!("preparing Python for {}: {step}", self.packages.first_run()));
+        steps.show(&format!("preparing Python for {}: {step}", self.packages.first_run));
     }
 
     /// Moves an environment to its final folder.

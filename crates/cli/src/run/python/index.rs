@@ -35,8 +35,8 @@ pub(super) async fn check_index(base: &Interpreter, packages: Packages) -> Resul
 
 /// The packages could not be installed.
 pub(super) fn uninstalled(packages: Packages, reason: &str) -> Failure {
-    Failure::new(format!("cannot install {}: {reason}", packages.names())).help(format!(
+    Failure::new(format!("cannot install {}: {reason}", packages.names)).help(format!(
         "{} needs network access to PyPI; behind a proxy or with a mirror, set HTTPS_PROXY or PIP_INDEX_URL",
-        packages.first_run()
+        packages.first_run
     ))
 }

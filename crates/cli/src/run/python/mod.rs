@@ -12,6 +12,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use pydslrep_output::provide_runtime;
 use pydslrep_script::{REQUIREMENTS, REQUIREMENTS_MUJOCO, REQUIREMENTS_SLAM};
 
 use self::environment::Environment;
@@ -19,57 +20,50 @@ use crate::failure::Failure;
 use crate::run::reporter::Reporter;
 
 /// The packages installed for a script.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Packages {
-    /// The client library of `CoppeliaSim`.
-    Client,
-    /// The same and the packages for slam by odometry.
-    ClientAndOdometry,
-    /// `MuJoCo`, instead of the client.
-    MuJoCo,
-    /// The same and the packages for slam by odometry.
-    MuJoCoAndOdometry,
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Packages {
+    /// Requirements files for pip.
+    requirements: &'static [&'static str],
+    /// The modules that scripts import from them.
+    modules: &'static [&'static str],
+    /// What people call them.
+    names: &'static str,
+    /// The run that installs them.
+    first_run: &'static str,
 }
 
 impl Packages {
-    /// A requirements file for pip.
-    fn requirements(self) -> String {
-        match self {
-            Self::Client => REQUIREMENTS.to_owned(),
-            Self::ClientAndOdometry => format!("{REQUIREMENTS}{REQUIREMENTS_SLAM}"),
-            Self::MuJoCo => REQUIREMENTS_MUJOCO.to_owned(),
-            Self::MuJoCoAndOdometry => format!("{REQUIREMENTS_MUJOCO}{REQUIREMENTS_SLAM}"),
-        }
-    }
+    /// The client library of `CoppeliaSim`.
+    pub(crate) const CLIENT: Self = Self {
+        requirements: &[REQUIREMENTS],
+        modules: &["coppeliasim_zmqremoteapi_client"],
+        names: "the CoppeliaSim client library",
+        first_run: "the first run",
+    };
 
-    /// The modules that scripts import from them.
-    fn modules(self) -> &'static [&'static str] {
-        match self {
-            Self::Client => &["coppeliasim_zmqremoteapi_client"],
-            Self::ClientAndOdometry => &["coppeliasim_zmqremoteapi_client", "numpy", "scipy"],
-            Self::MuJoCo => &["mujoco", "numpy"],
-            Self::MuJoCoAndOdometry => &["mujoco", "numpy", "scipy"],
-        }
-    }
+    /// The same and the packages for slam by odometry.
+    pub(crate) const CLIENT_AND_ODOMETRY: Self = Self {
+        requirements: &[REQUIREMENTS, REQUIREMENTS_SLAM],
+        modules: &["coppeliasim_zmqremoteapi_client", "numpy", "scipy"],
+        names: "the CoppeliaSim client library, NumPy and SciPy",
+        first_run: "the first run with --odometry",
+    };
 
-    fn names(self) -> &'static str {
-        match self {
-            Self::Client => "the CoppeliaSim client library",
-            Self::ClientAndOdometry => "the CoppeliaSim client library, NumPy and SciPy",
-            Self::MuJoCo => "MuJoCo",
-            Self::MuJoCoAndOdometry => "MuJoCo, NumPy and SciPy",
-        }
-    }
+    /// `MuJoCo`, instead of the client.
+    pub(crate) const MUJOCO: Self = Self {
+        requirements: &[REQUIREMENTS_MUJOCO],
+        modules: &["mujoco", "numpy"],
+        names: "MuJoCo",
+        first_run: "the first run with --engine mujoco",
+    };
 
-    /// The run that installs them.
-    fn first_run(self) -> &'static str {
-        match self {
-            Self::Client => "the first run",
-            Self::ClientAndOdometry => "the first run with --odometry",
-            Self::MuJoCo => "the first run with --engine mujoco",
-            Self::MuJoCoAndOdometry => "the first run with --engine mujoco and --odometry",
-        }
-    }
+    /// The same and the packages for slam by odometry.
+    pub(crate) const MUJOCO_AND_ODOMETRY: Self = Self {
+        requirements: &[REQUIREMENTS_MUJOCO, REQUIREMENTS_SLAM],
+        modules: &["mujoco", "numpy", "scipy"],
+        names: "MuJoCo, NumPy and SciPy",
+        first_run: "the first run with --engine mujoco and --odometry",
+    };
 }
 
 /// The recipient of the preparations' progress.
@@ -90,8 +84,8 @@ pub(crate) async fn prepare(
     packages: Packages,
     watcher: Watcher<'_>,
 ) -> Result<PathBuf, Failure> {
-    let base = interpreter::find(chosen, packages.modules()).await?;
-    if base.modules.len() == packages.modules().len() {
+    let base = interpreter::find(chosen, packages.modules).await?;
+    if base.modules.len() == packages.modules.len() {
         return Ok(base.path);
     }
     Environment::new(base, packages, cache()?).prepare(watcher).await
@@ -120,18 +114,18 @@ pub(crate) struct Description {
 /// # Errors
 /// If there is no suitable Python.
 pub(crate) async fn describe(chosen: Option<&Path>) -> Result<Description, Failure> {
-    let all = Packages::ClientAndOdometry;
-    let base = interpreter::find(chosen, all.modules()).await?;
+    let all = Packages::CLIENT_AND_ODOMETRY;
+    let base = interpreter::find(chosen, all.modules).await?;
     let place = |packages: Packages| -> Result<String, Failure> {
         let has = |module: &&str| base.modules.iter().any(|found| found == module);
-        if packages.modules().iter().all(has) {
+        if packages.modules.iter().all(has) {
             return Ok("in this Python".to_owned());
         }
         Ok(Environment::new(base.clone(), packages, cache()?).describe())
     };
     Ok(Description {
         interpreter: format!("{} ({})", base.version, base.path.display()),
-        client: place(Packages::Client)?,
+        client: place(Packages::CLIENT)?,
         odometry: place(all)?,
     })
 }
@@ -152,6 +146,15 @@ pub(crate) fn cache() -> Result<PathBuf, Failure> {
     let cache = cache.join("pydslrep");
     fs::create_dir_all(&cache).map_err(|error| uncached(&cache, &error))?;
     Ok(cache)
+}
+
+/// The folder to import the package of scripts from: in the cache or, without one, in `folder`, for one run only.
+///
+/// # Errors
+/// If the package cannot be written.
+pub(crate) fn runtime(folder: &Path) -> Result<PathBuf, Failure> {
+    let cached = cache().and_then(|cache| Ok(provide_runtime(&cache)?));
+    Ok(cached.or_else(|_| provide_runtime(folder))?)
 }
 
 fn uncached(path: &Path, error: &io::Error) -> Failure {

@@ -12,9 +12,9 @@ const MAX_STREAMS: usize = 1024;
 pub(in super::super) struct Client {
     pub(super) streams: Vec<Stream>,
     /// Each step waits for a trigger of this client.
-    pub(super) synchronous: bool,
+    pub(in super::super) synchronous: bool,
     /// It has triggered the next step.
-    pub(super) triggered: bool,
+    pub(in super::super) triggered: bool,
 }
 
 #[derive(Debug, Clone)]
@@ -27,16 +27,6 @@ pub(super) struct Stream {
 }
 
 impl Client {
-    /// Returns whether steps wait for this client.
-    pub(in super::super) fn is_synchronous(&self) -> bool {
-        self.synchronous
-    }
-
-    /// Returns whether it has triggered the next step.
-    pub(in super::super) fn has_triggered(&self) -> bool {
-        self.triggered
-    }
-
     /// After a step: the next one needs another trigger.
     pub(in super::super) fn await_trigger(&mut self) {
         self.triggered = false;

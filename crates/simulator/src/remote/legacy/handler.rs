@@ -64,10 +64,8 @@ impl Session {
     fn command(&mut self, client: &mut Client, connection: u64, now: Duration, command: &Command) -> Outcome {
         client.remove_stream(&command.name);
         match command.mode {
-            mode::ONESHOT | mode::BLOCKING => {
-                self.execute(client, connection, &command.name, &command.payload)
-            }
-            mode::STREAMING if client.add_stream(command, now) => {
+            mode::STREAMING if !client.add_stream(command, now) => Outcome::failure(),
+            mode::ONESHOT | mode::BLOCKING | mode::STREAMING => {
                 self.execute(client, connection, &command.name, &command.payload)
             }
             mode::DISCONTINUE => Outcome::done(),
@@ -102,36 +100,23 @@ impl Session {
             SYNCHRONOUS_ON => {
                 client.synchronous = true;
                 client.triggered = false;
-                Outcome::done()
             }
-            SYNCHRONOUS_OFF => {
-                client.synchronous = false;
-                Outcome::done()
-            }
-            TRIGGER if client.synchronous && self.state == State::Running => {
-                client.triggered = true;
-                Outcome::done()
-            }
-            DISCONNECT => Outcome::done(),
+            SYNCHRONOUS_OFF => client.synchronous = false,
+            TRIGGER if client.synchronous && self.state == State::Running => client.triggered = true,
+            DISCONNECT => {}
             START_PAUSE_STOP => match message::number(&name.key, 0) {
-                Some(0) => {
-                    self.start();
-                    Outcome::done()
-                }
-                Some(1) => {
-                    self.pause();
-                    Outcome::done()
-                }
+                Some(0) => self.start(),
+                Some(1) => self.pause(),
                 Some(2) => {
                     self.stop();
                     // It is not in the map while it is served.
                     client.leave_synchronous_mode();
-                    Outcome::done()
                 }
-                _ => Outcome::failure(),
+                _ => return Outcome::failure(),
             },
-            _ => commands::execute(&mut self.context(connection), name, payload),
+            _ => return commands::execute(&mut self.context(connection), name, payload),
         }
+        Outcome::done()
     }
 
     /// The state byte: bit 0 not stopped, bit 1 paused, bit 2 real time.
