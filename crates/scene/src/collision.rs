@@ -185,11 +185,16 @@ fn of_two(a: (usize, Body, &RobotPath), b: (usize, Body, &RobotPath)) -> Option<
             let (robot, other, me, you) =
                 if one.drives() { (a.0, b.0, one, two) } else { (b.0, a.0, two, one) };
             let leg = me.leg?;
-            let (with, time) = (SceneObject::Robot(other), Some(time));
-            let (action, place, pose) = (leg.index, leg.place.clone(), me.pose);
-            let other_action = you.leg.map(|leg| leg.index);
-            let other_place = you.leg.map(|leg| leg.place.clone()).unwrap_or_default();
-            return Some(Collision { robot, action, place, time, pose, with, other_action, other_place });
+            return Some(Collision {
+                robot,
+                action: leg.index,
+                place: leg.place.clone(),
+                time: Some(time),
+                pose: me.pose,
+                with: SceneObject::Robot(other),
+                other_action: you.leg.map(|leg| leg.index),
+                other_place: you.leg.map(|leg| leg.place.clone()).unwrap_or_default(),
+            });
         }
         time = (time + step(distance, speed)).min(change);
     }

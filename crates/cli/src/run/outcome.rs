@@ -81,8 +81,12 @@ impl Outcome<'_> {
                 let off = planned.relative(&driven);
                 Offset { distance: off.x.hypot(off.y), angle: off.theta.abs() }
             });
-            let (planned, driven) = (planned.map(End::from), driven.map(End::from));
-            RobotFigures { name: &robot.name, planned, driven, off }
+            RobotFigures {
+                name: &robot.name,
+                planned: planned.map(End::from),
+                driven: driven.map(End::from),
+                off,
+            }
         });
         Figures {
             environment: &self.planned.environment.name,
