@@ -107,6 +107,7 @@ impl ClientFeatures {
         Self {
             encoding,
             pull_diagnostics: has("/textDocument/diagnostic"),
+            // Before 3.18 the protocol had this, tags and descriptions of codes for pushed diagnostics only.
             related_information: can("/textDocument/publishDiagnostics/relatedInformation")
                 || can("/textDocument/diagnostic/relatedInformation"),
             diagnostic_tags: if has("/textDocument/diagnostic/tagSupport") {
@@ -138,6 +139,7 @@ impl ClientFeatures {
             disabled_actions: can("/textDocument/codeAction/disabledSupport"),
             resolve_edits: can("/textDocument/codeAction/dataSupport")
                 && lists("/textDocument/codeAction/resolveSupport/properties", "edit"),
+            // Neovim lists only operations, which only versioned edits can contain.
             versioned_edits: can("/workspace/workspaceEdit/documentChanges") || !list(operations).is_empty(),
             applies_edits: can("/workspace/applyEdit"),
             create_files: lists(operations, "create"),
