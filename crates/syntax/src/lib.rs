@@ -13,12 +13,13 @@ mod error;
 mod format;
 mod lexer;
 mod parser;
+mod shift;
 mod token;
 
 pub use cut::{LOOKAHEAD, cut};
 pub use error::{Expected, Found, Quantity, SyntaxError, SyntaxErrorKind};
 pub use format::{COLUMNS, TextEdit, apply_edits, format, format_edits};
 pub use lexer::{Token, lex};
-pub use parser::{Parse, expected_after, parse, parse_cut, parse_each};
+pub use parser::{Earlier, Parse, expected_after, parse, parse_again, parse_cut, parse_each};
 pub use pydslrep_text::{Span, offset};
 pub use token::{EntityKind, KEYWORDS, TokenKind, TokenSet, escape};

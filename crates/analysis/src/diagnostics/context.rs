@@ -4,7 +4,7 @@ use std::cell::{OnceCell, RefCell};
 
 use pydslrep_kinematics::Drive;
 use pydslrep_syntax::ast::{Action, Entity, Name, Robot, Wheel};
-use pydslrep_syntax::{EntityKind, Span, SyntaxError, Token};
+use pydslrep_syntax::{EntityKind, Parse, Span, SyntaxError, Token};
 use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
 
@@ -28,6 +28,7 @@ pub(super) struct Context<'a> {
     facts: &'a Facts,
     file: FileId,
     pub(super) id: EntityId,
+    pub(super) parse: &'a Parse,
     /// `None` for the text before the first entity.
     pub(super) tree: Option<&'a Entity>,
     pub(super) errors: &'a [SyntaxError],
@@ -58,6 +59,7 @@ impl<'a> Context<'a> {
             facts,
             file: facts.file_of(id)?,
             id,
+            parse,
             tree: parse.entity.as_ref(),
             errors: &parse.errors,
             tokens: &parse.tokens,

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use pydslrep_syntax::ast::Entity;
-use pydslrep_syntax::{EntityKind, Parse, Span, Token, parse_each};
+use pydslrep_syntax::{EntityKind, Parse, Span, parse_each};
 use ropey::Rope;
 
 use super::edited::Edited;
@@ -49,11 +49,9 @@ impl Facts {
     /// Takes `after` as the text of an open file, in which only `span` is replaced.
     pub(crate) fn edit(&mut self, file: FileId, span: Span, after: Rope) -> Option<Edited> {
         let entities = &self.entities;
-        let tokens = |id: EntityId| -> &[Token] {
-            entities[id.index()].as_ref().map_or(&[], |data| &data.parse.tokens)
-        };
+        let parse = |id: EntityId| entities[id.index()].as_ref().map(|data| &*data.parse);
         let open = self.files.get_mut(file.index()).and_then(Option::as_mut)?;
-        let window = open.edit(fit(&open.text, span), after, tokens);
+        let window = open.edit(fit(&open.text, span), after, parse);
         Some(self.apply(file, window))
     }
 

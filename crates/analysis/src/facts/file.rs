@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use pydslrep_syntax::{LOOKAHEAD, Parse, Span, TokenKind, cut, lex, parse, parse_cut};
+use pydslrep_syntax::{Earlier, LOOKAHEAD, Parse, Span, Token, cut, lex, parse_again, parse_cut};
 use ropey::Rope;
 
 use crate::entity::EntityId;
@@ -28,6 +28,15 @@ pub(crate) struct Window {
     pub(crate) parses: Vec<(Span, Parse)>,
 }
 
+/// Where to begin reading again after an edit.
+struct ReadFrom<'a> {
+    start: u32,
+    /// How much longer the text is now.
+    growth: i64,
+    /// The entity that the edit is in.
+    earlier: Option<Earlier<'a>>,
+}
+
 impl File {
     /// The line ending that the file uses.
     pub(crate) fn line_ending(&self) -> &'static str {
@@ -36,75 +45,83 @@ impl File {
     }
 
     /// Takes `after` as the text, in which only `span` is replaced, and reads again what that may have changed. The
-    /// caller puts the new slots in place. `lexemes_of` gives the tokens of a slot as they were.
+    /// caller puts the new slots in place. `parse_of` gives what a slot was read as.
     pub(crate) fn edit<'a>(
         &mut self,
         span: Span,
         after: Rope,
-        lexemes_of: impl Fn(EntityId) -> &'a [(TokenKind, Span)],
+        parse_of: impl Fn(EntityId) -> Option<&'a Parse>,
     ) -> Window {
-        let (first, first_start) = self.window_start(span.start, lexemes_of);
+        let (first, first_start) =
+            self.window_start(span.start, |entity| parse_of(entity).map_or(&[], |parse| &parse.tokens));
         let (touched, touched_start) = self.slots.at(span.end);
         let before = self.slots.at(span.start).0 - first;
         let untouched = |window: &Range<usize>| (before, window.end - touched - 1);
         let old_len = Span::of_rope(&self.text).len();
         self.text = after;
-        let grown = i64::from(Span::of_rope(&self.text).len()) - i64::from(old_len);
+        let growth = i64::from(Span::of_rope(&self.text).len()) - i64::from(old_len);
+        let earlier =
+            parse_of(self.slots[touched].entity).filter(|_| span.start >= touched_start).map(|parse| {
+                let start = touched_start - first_start;
+                Earlier {
+                    parse,
+                    now: Span::new(start, shift(start + self.slots[touched].len, growth)),
+                    edited: Span::new(span.start - touched_start, span.end - touched_start),
+                    growth,
+                }
+            });
+        let from = ReadFrom { start: first_start, growth, earlier };
         let mut end = touched + 1;
         let mut end_offset = touched_start + self.slots[touched].len;
-        let mut growth = 1;
+        let mut more = 1;
         let mut relexed = 0;
         loop {
             let parses = if end >= self.slots.len() {
                 let window = Span::new(first_start, Span::of_rope(&self.text).len());
-                Some(parse(&window.slice(&self.text)))
+                Some(parse_again(&window.slice(&self.text), earlier))
             } else {
-                let boundary = shift(end_offset, grown);
-                self.read_up_to(first_start, boundary, end, grown, end_offset, &mut relexed)
+                self.read_up_to(&from, end, end_offset, &mut relexed)
             };
             if let Some(parses) = parses {
                 let replaced = first..end.min(self.slots.len());
                 relexed += parses.iter().map(|(_, parse)| parse.tokens.len()).sum::<usize>();
                 return Window { untouched: untouched(&replaced), replaced, relexed, parses };
             }
-            let next_end = (end + growth).min(self.slots.len());
+            let next_end = (end + more).min(self.slots.len());
             end_offset += self.slots[end..next_end].iter().map(|slot| slot.len).sum::<u32>();
             end = next_end;
-            growth *= 2;
+            more *= 2;
         }
     }
 
-    /// Reads from `start` to `boundary`, if the old boundary there still holds: a token begins on it and still begins
-    /// an entity. Whether it does depends on that token and the few after it, and each slot has at least one; from
-    /// there on nothing can have changed.
+    /// Reads up to what was at `end_offset`, where the slot `end` began, if it still begins there: a token begins on it
+    /// and still begins an entity. Whether it does depends on that token and the few after it, and each slot has at least
+    /// one; from there on nothing can have changed.
     fn read_up_to(
         &self,
-        start: u32,
-        boundary: u32,
+        from: &ReadFrom<'_>,
         end: usize,
-        grown: i64,
         end_offset: u32,
         relexed: &mut usize,
     ) -> Option<Vec<(Span, Parse)>> {
+        let ReadFrom { start, growth, earlier } = *from;
+        let boundary = shift(end_offset, growth);
         let ahead: u32 = self.slots[end..].iter().take(1 + LOOKAHEAD).map(|slot| slot.len).sum();
-        let text = Span::new(start, shift(end_offset + ahead, grown)).slice(&self.text);
+        let text = Span::new(start, shift(end_offset + ahead, growth)).slice(&self.text);
         let tokens = lex(&text);
         *relexed += tokens.len();
         let starts = cut(&text, &tokens);
         let last = starts.iter().position(|&index| tokens[index].1.start + start == boundary)?;
         let mut parses = Vec::with_capacity(last + 1);
         let text = Span::new(0, boundary - start).text(&text);
-        parse_cut(text, &tokens[..starts[last]], &starts[..last], |span, parse| parses.push((span, parse)));
+        let (tokens, starts) = (&tokens[..starts[last]], &starts[..last]);
+        parse_cut(text, tokens, starts, earlier, |span, parse| parses.push((span, parse)));
         Some(parses)
     }
 
     /// The first slot to read again. Whether a slot begins where it does depends on its first token, those few after
     /// it and what is before; so that many of its tokens must be as they were.
-    fn window_start<'a>(
-        &self,
-        offset: u32,
-        lexemes_of: impl Fn(EntityId) -> &'a [(TokenKind, Span)],
-    ) -> (usize, u32) {
+    fn window_start<'a>(&self, offset: u32, lexemes_of: impl Fn(EntityId) -> &'a [Token]) -> (usize, u32) {
         const NEEDED: usize = 1 + LOOKAHEAD;
         let (mut index, mut start) = self.slots.at(offset);
         let (mut settled, mut untouched) = (offset, 0);

@@ -4,6 +4,7 @@ use chumsky::IterParser;
 use chumsky::prelude::{Parser, choice, just, recursive, via_parser};
 
 use super::condition::{UNTIL, condition, until};
+use super::reuse::known_action;
 use super::slot::{
     HARD_ACTIONS, NUMBER, action_ahead, braced, keyword, misspelling, number, one_in, plain_name,
     skip_before, skip_statement, skip_to_block, slot, slot_before,
@@ -73,7 +74,7 @@ fn action<'s>(block: &Rule<'s, Block>) -> Actions<'s> {
         do_action(),
         just(TokenKind::Slam).to(ActionKind::Slam).boxed(),
     ));
-    let known = spanned(kinds).labelled(Expected::Action);
+    let known = choice((known_action(), spanned(kinds))).labelled(Expected::Action);
     let misspelt = spanned(choice((
         misspelt_action(TokenKind::Wait).ignore_then(waits),
         misspelt_action(TokenKind::Repeat).ignore_then(repeats),

@@ -61,9 +61,12 @@ fn bare_sensors<'s>() -> impl Parser<'s, Input<'s>, References, Extra<'s>> + Clo
 }
 
 fn state<'s>() -> impl Parser<'s, Input<'s>, (SensorState, Span), Extra<'s>> + Clone {
-    let word = |token, state| choice((just(token).ignored(), misspelling(token).ignored())).to(state);
-    choice((word(TokenKind::Clear, SensorState::Clear), word(TokenKind::Detect, SensorState::Detect)))
-        .map_with(|state, extra| (state, extra.span()))
+    const WORDS: [(TokenKind, SensorState); 2] =
+        [(TokenKind::Clear, SensorState::Clear), (TokenKind::Detect, SensorState::Detect)];
+    let exact = WORDS.map(|(word, state)| just(word).to(state));
+    // To look whether a word is nearly another one takes longer than all the rest.
+    let nearly = WORDS.map(|(word, state)| misspelling(word).to(state));
+    choice((choice(exact), choice(nearly))).map_with(|state, extra| (state, extra.span()))
 }
 
 /// A word where one of `expected` can be, and the condition that it combines with this one.

@@ -11,6 +11,8 @@ mod errors;
 mod expectation;
 mod movement;
 mod pairs;
+mod piece;
+mod reuse;
 mod robot;
 mod slot;
 
@@ -22,9 +24,11 @@ use chumsky::extra::{self, SimpleState};
 use chumsky::input::{Input as _, MappedInput};
 use smol_str::SmolStr;
 
+use self::piece::{Piece, correct_beginning, without_trivia};
+pub use self::reuse::Earlier;
+use self::reuse::Known;
 use self::slot::Fault;
 use crate::ast::Entity;
-use crate::cut::misspelt_beginning;
 use crate::{EntityKind, Expected, Span, SyntaxError, Token, TokenKind, cut, lex};
 
 type Input<'s> = MappedInput<'s, TokenKind, Span, &'s [Token]>;
@@ -37,6 +41,8 @@ struct Source<'s> {
     text: &'s str,
     /// The number of its closing braces, compared with that of its opening ones.
     closed: Ordering,
+    /// Actions that need not be read again.
+    known: &'s [Known<'s>],
 }
 
 /// The result of parsing one piece of a file.
@@ -51,6 +57,8 @@ pub struct Parse {
     /// Names in text that had to be skipped. They may be declarations that a mistake hides, so nothing should report
     /// that such a name does not exist.
     pub skipped_names: Vec<SmolStr>,
+    /// From the first complaint of a rule to the last one, those that are no error of their own included.
+    faults: Option<Span>,
 }
 
 /// The number of pieces that are read with the same rules: so many that building those hardly counts, and so few that
@@ -68,11 +76,25 @@ pub fn parse(text: &str) -> Vec<(Span, Parse)> {
 /// As [`parse`], handing over one piece after the other.
 pub fn parse_each(text: &str, emit: impl FnMut(Span, Parse)) {
     let tokens = lex(text);
-    parse_cut(text, &tokens, &cut(text, &tokens), emit);
+    parse_cut(text, &tokens, &cut(text, &tokens), None, emit);
 }
 
-/// As [`parse_each`], of a text that is lexed and cut already.
-pub fn parse_cut(text: &str, tokens: &[Token], starts: &[usize], mut emit: impl FnMut(Span, Parse)) {
+/// As [`parse`], where one of the pieces was read before an edit inside it.
+pub fn parse_again(text: &str, earlier: Option<Earlier<'_>>) -> Vec<(Span, Parse)> {
+    let tokens = lex(text);
+    let mut parses = Vec::new();
+    parse_cut(text, &tokens, &cut(text, &tokens), earlier, |span, parse| parses.push((span, parse)));
+    parses
+}
+
+/// As [`parse_again`], of a text that is lexed and cut already.
+pub fn parse_cut(
+    text: &str,
+    tokens: &[Token],
+    starts: &[usize],
+    earlier: Option<Earlier<'_>>,
+    mut emit: impl FnMut(Span, Parse),
+) {
     let end = Span::of(text).end;
     let mut pieces = Vec::with_capacity(starts.len() + 1);
     let first_start = starts.first().map_or(end, |&index| tokens[index].1.start);
@@ -88,7 +110,7 @@ pub fn parse_cut(text: &str, tokens: &[Token], starts: &[usize], mut emit: impl 
         })
         .collect();
     for batch in bounds.chunks(BATCH) {
-        parse_batch(text, batch, &mut emit);
+        parse_batch(text, batch, earlier.as_ref(), &mut emit);
     }
 }
 
@@ -102,7 +124,7 @@ pub fn expected_after(text: &str, tokens: &[Token]) -> Vec<Expected> {
     correct_beginning(text, tokens, &mut significant);
     let cursor = significant.last().map_or(0, |(_, span)| span.end);
     significant.push((TokenKind::Cursor, Span::at(cursor)));
-    let (_, faults) = Parser::new().run(text, &significant);
+    let (_, faults) = Parser::new().run(text, &significant, &[]);
     let expected = faults.iter().find_map(|fault| match fault {
         Fault::Expected { at, expected } if at.start >= cursor => Some(expected.to_vec()),
         _ => None,
@@ -121,107 +143,25 @@ fn must_not_close(text: &str, significant: &[Token]) -> bool {
         return false;
     };
     let closed = [before, &[(TokenKind::OpenBrace, *open), (TokenKind::CloseBrace, *cursor)]].concat();
-    let (_, faults) = Parser::new().run(text, &closed);
+    let (_, faults) = Parser::new().run(text, &closed, &[]);
     faults.iter().any(|fault| matches!(fault, Fault::EmptyList(span, _) if span.end >= cursor.end))
 }
 
-fn parse_batch(text: &str, bounds: &[(&[Token], Span)], emit: &mut impl FnMut(Span, Parse)) {
-    let relative: Vec<Box<[Token]>> =
-        bounds.iter().map(|(tokens, span)| relocate(tokens, span.start)).collect();
-    let changed: Vec<Option<Vec<Token>>> = bounds
-        .iter()
-        .zip(&relative)
-        .map(|((_, span), tokens)| tokens_to_parse(span.text(text), tokens))
-        .collect();
+fn parse_batch(
+    text: &str,
+    bounds: &[(&[Token], Span)],
+    earlier: Option<&Earlier<'_>>,
+    emit: &mut impl FnMut(Span, Parse),
+) {
+    let pieces: Vec<Piece<'_>> =
+        bounds.iter().map(|(tokens, span)| Piece::new(text, tokens, *span, earlier)).collect();
     let mut parser = Parser::new();
-    let trees: Vec<_> = bounds
-        .iter()
-        .zip(relative.iter().zip(&changed))
-        .map(|((_, span), (all, some))| parser.run(span.text(text), some.as_deref().unwrap_or(all)))
-        .collect();
+    let read: Vec<_> =
+        pieces.iter().map(|piece| parser.run(piece.text, piece.significant(), &piece.known)).collect();
     drop(parser);
-    let significant = relative.into_iter().zip(&changed);
-    for (((_, span), (tokens, some)), (entity, faults)) in bounds.iter().zip(significant).zip(trees) {
-        let piece = span.text(text);
-        let significant = some.as_deref().unwrap_or(&tokens);
-        let mut faults = with_beginning(&tokens, significant, faults);
-        faults.extend(deep_blocks(&tokens).into_iter().map(Fault::Skipped));
-        let errors =
-            errors::of_faults(piece, entity.as_ref().and_then(Entity::kind), significant, &tokens, &faults);
-        let skipped_names = errors::skipped_names(piece, &tokens, &faults);
-        emit(*span, Parse { entity, errors, tokens, skipped_names });
+    for (piece, (entity, faults)) in pieces.into_iter().zip(read) {
+        emit(piece.span, piece.parse(entity, faults));
     }
-}
-
-/// The tokens the parser sees, where they differ from those of the lexer: no comments, nothing in blocks that are too deep,
-/// and a misspelt keyword at the beginning counts as the keyword that it resembles.
-fn tokens_to_parse(piece: &str, tokens: &[Token]) -> Option<Vec<Token>> {
-    let is_misspelt = misspelt_beginning(piece, tokens).is_some();
-    let deep = deep_blocks(tokens);
-    (is_misspelt || tokens.iter().any(is_trivia) || !deep.is_empty()).then(|| {
-        let mut significant = without_trivia(tokens);
-        significant
-            .retain(|(_, span)| !deep.iter().any(|block| block.start <= span.start && span.end <= block.end));
-        correct_beginning(piece, tokens, &mut significant);
-        significant
-    })
-}
-
-/// Returns the blocks that are deeper than [`MAX_DEPTH`]: the parser calls itself once per block, and its stack ends.
-fn deep_blocks(tokens: &[Token]) -> Vec<Span> {
-    let (mut depth, mut inside, mut blocks) = (0_usize, None, Vec::new());
-    for (token, span) in tokens {
-        match token {
-            TokenKind::OpenBrace => {
-                depth += 1;
-                if depth > MAX_DEPTH {
-                    inside.get_or_insert(span.end);
-                }
-            }
-            TokenKind::CloseBrace => {
-                depth = depth.saturating_sub(1);
-                if let Some(start) = inside.take_if(|_| depth == MAX_DEPTH) {
-                    blocks.push(Span::new(start, span.start));
-                }
-            }
-            _ => {}
-        }
-    }
-    blocks.extend(inside.map(|start| Span::new(start, u32::MAX)));
-    blocks
-}
-
-/// The braces within each other that are parsed; far more than a program may have.
-const MAX_DEPTH: usize = 40;
-
-/// Replaces a misspelt keyword at the beginning of an entity by the correct one.
-fn correct_beginning(text: &str, tokens: &[Token], significant: &mut [Token]) {
-    if let (Some(keyword), Some((first, _))) = (misspelt_beginning(text, tokens), significant.first_mut()) {
-        *first = keyword;
-    }
-}
-
-/// The faults, and the one of a misspelt keyword at the beginning.
-fn with_beginning(tokens: &[Token], significant: &[Token], mut faults: Vec<Fault>) -> Vec<Fault> {
-    let written = tokens.iter().find(|token| !is_trivia(token));
-    if let (Some((written, span)), Some((keyword, _))) = (written, significant.first())
-        && written != keyword
-    {
-        faults.insert(0, Fault::TakenForKeyword(*span, *keyword));
-    }
-    faults
-}
-
-fn relocate(tokens: &[Token], start: u32) -> Box<[Token]> {
-    tokens.iter().map(|&(token, span)| (token, Span::new(span.start - start, span.end - start))).collect()
-}
-
-fn is_trivia((token, _): &Token) -> bool {
-    token.is_comment() || *token == TokenKind::Invalid
-}
-
-fn without_trivia(tokens: &[Token]) -> Vec<Token> {
-    tokens.iter().filter(|token| !is_trivia(token)).copied().collect()
 }
 
 /// The grammar's rules, each built when it is first needed: building one costs more than parsing an entity with it.
@@ -236,14 +176,20 @@ impl<'s> Parser<'s> {
         Self { rules: [const { None }; RULES] }
     }
 
-    fn run(&mut self, text: &'s str, significant: &'s [Token]) -> (Option<Entity>, Vec<Fault>) {
+    /// Parses one entity, of which some actions may be known.
+    fn run(
+        &mut self,
+        text: &'s str,
+        significant: &'s [Token],
+        known: &'s [Known<'s>],
+    ) -> (Option<Entity>, Vec<Fault>) {
         let Some(&(first, _)) = significant.first() else { return (None, Vec::new()) };
         let (index, build) = rule_for(first);
         let rule = self.rules[index].get_or_insert_with(build);
         let input = significant.split_token_span(Span::at(Span::of(text).end));
         let count = |brace| significant.iter().filter(|(token, _)| *token == brace).count();
         let closed = count(TokenKind::CloseBrace).cmp(&count(TokenKind::OpenBrace));
-        let mut state = SimpleState(Source { text, closed });
+        let mut state = SimpleState(Source { text, closed, known });
         let (tree, faults) = rule.parse_with_state(input, &mut state).into_output_errors();
         (tree.flatten(), faults)
     }

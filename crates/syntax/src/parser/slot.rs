@@ -40,8 +40,21 @@ pub(super) enum Fault {
 
 impl Fault {
     /// The fault of a rule that only looked ahead.
-    fn nothing(at: Span) -> Self {
+    pub(super) fn nothing(at: Span) -> Self {
         Self::Expected { at, expected: Expectation::default() }
+    }
+
+    /// The tokens that it is about.
+    pub(super) fn span(&self) -> Span {
+        match self {
+            Self::Expected { at: span, .. }
+            | Self::Skipped(span)
+            | Self::TakenForKeyword(span, _)
+            | Self::TakenForName(span, _)
+            | Self::MalformedNumber(span)
+            | Self::PortNotWhole(span)
+            | Self::EmptyList(span, _) => *span,
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Finding fixes: what could fix an entity is tried, and offered where it does.
 
 use pydslrep_syntax::ast::Entity;
-use pydslrep_syntax::{Expected, Span, TokenKind, TokenSet, parse};
+use pydslrep_syntax::{Earlier, Expected, Span, TokenKind, TokenSet, parse_again};
 
 use crate::diagnostics::context::Context;
 use crate::diagnostics::edits::ProblemEdit;
@@ -37,6 +37,7 @@ fn entities_and_errors(context: &Context<'_>, edits: &[ProblemEdit]) -> Option<(
     if context.errors.len() > MAX_ERRORS || end > MAX_LENGTH {
         return None;
     }
+    let edited = edits.iter().map(|edit| edit.span).reduce(Span::to)?;
     let mut text = context.text(Span::new(0, end)).to_owned();
     let mut edits: Vec<&ProblemEdit> = edits.iter().collect();
     edits.sort_by_key(|edit| std::cmp::Reverse(edit.span.start));
@@ -45,7 +46,9 @@ fn entities_and_errors(context: &Context<'_>, edits: &[ProblemEdit]) -> Option<(
         text.get(range.clone())?;
         text.replace_range(range, &edit.text);
     }
-    let pieces = parse(&text);
+    let now = Span::of(&text);
+    let growth = i64::from(now.len()) - i64::from(end);
+    let pieces = parse_again(&text, Some(Earlier { parse: context.parse, now, edited, growth }));
     let errors = pieces.iter().map(|(_, parse)| parse.errors.len()).sum();
     Some((pieces.len(), errors))
 }
