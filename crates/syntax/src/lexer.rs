@@ -2,6 +2,7 @@
 
 use logos::Logos;
 
+use crate::shift::Shift;
 use crate::{Span, TokenKind};
 
 /// A token and where it is.
@@ -14,14 +15,35 @@ const BYTE_ORDER_MARK: &str = "\u{feff}";
 ///
 /// Texts beyond 4 GiB are cut off there.
 pub fn lex(text: &str) -> Vec<Token> {
+    lex_unless(text, |_, _| None)
+}
+
+/// As [`lex`], without reading what is `known`: it is asked where a token begins, with those before it, and may say which
+/// tokens follow and how far they have moved since.
+pub(crate) fn lex_unless<'t>(
+    text: &str,
+    known: impl Fn(u32, &[Token]) -> Option<(&'t [Token], i64)>,
+) -> Vec<Token> {
     let start = if text.starts_with(BYTE_ORDER_MARK) { BYTE_ORDER_MARK.len() } else { 0 };
     let mut tokens: Vec<Token> = Vec::with_capacity(text.len() / 6);
-    for (token, range) in TokenKind::lexer(&text[start..]).spanned() {
+    let mut lexer = TokenKind::lexer(&text[start..]);
+    while let Some(token) = lexer.next() {
+        let range = lexer.span();
         let (Ok(from), Ok(to)) = (u32::try_from(range.start + start), u32::try_from(range.end + start))
         else {
             break;
         };
-        push(text, &mut tokens, token.unwrap_or(TokenKind::Invalid), Span::new(from, to));
+        let Some((run, by)) = known(from, &tokens) else {
+            push(text, &mut tokens, token.unwrap_or(TokenKind::Invalid), Span::new(from, to));
+            continue;
+        };
+        tokens.extend(run.iter().map(|&(token, mut span)| {
+            span.shift(by);
+            (token, span)
+        }));
+        let end = tokens.last().map_or(to, |(_, last)| last.end);
+        let rest = lexer.remainder().len();
+        lexer.bump((end.saturating_sub(to) as usize).min(rest));
     }
     tokens
 }

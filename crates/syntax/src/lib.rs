@@ -9,6 +9,7 @@
 
 pub mod ast;
 mod cut;
+mod earlier;
 mod error;
 mod format;
 mod lexer;
@@ -17,9 +18,10 @@ mod shift;
 mod token;
 
 pub use cut::{LOOKAHEAD, cut};
+pub use earlier::{Earlier, lex_again};
 pub use error::{Expected, Found, Quantity, SyntaxError, SyntaxErrorKind};
 pub use format::{COLUMNS, TextEdit, apply_edits, format, format_edits};
 pub use lexer::{Token, lex};
-pub use parser::{Earlier, Parse, expected_after, parse, parse_again, parse_cut, parse_each};
+pub use parser::{Parse, expected_after, parse, parse_again, parse_cut, parse_each};
 pub use pydslrep_text::{Span, offset};
 pub use token::{EntityKind, KEYWORDS, TokenKind, TokenSet, escape};

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use pydslrep_syntax::{Earlier, LOOKAHEAD, Parse, Span, Token, cut, lex, parse_again, parse_cut};
+use pydslrep_syntax::{Earlier, LOOKAHEAD, Parse, Span, Token, cut, lex_again, parse_again, parse_cut};
 use ropey::Rope;
 
 use crate::entity::EntityId;
@@ -108,7 +108,7 @@ impl File {
         let boundary = shift(end_offset, growth);
         let ahead: u32 = self.slots[end..].iter().take(1 + LOOKAHEAD).map(|slot| slot.len).sum();
         let text = Span::new(start, shift(end_offset + ahead, growth)).slice(&self.text);
-        let tokens = lex(&text);
+        let tokens = lex_again(&text, earlier.as_ref());
         *relexed += tokens.len();
         let starts = cut(&text, &tokens);
         let last = starts.iter().position(|&index| tokens[index].1.start + start == boundary)?;

@@ -25,11 +25,10 @@ use chumsky::input::{Input as _, MappedInput};
 use smol_str::SmolStr;
 
 use self::piece::{Piece, correct_beginning, without_trivia};
-pub use self::reuse::Earlier;
 use self::reuse::Known;
 use self::slot::Fault;
 use crate::ast::Entity;
-use crate::{EntityKind, Expected, Span, SyntaxError, Token, TokenKind, cut, lex};
+use crate::{Earlier, EntityKind, Expected, Span, SyntaxError, Token, TokenKind, cut, lex, lex_again};
 
 type Input<'s> = MappedInput<'s, TokenKind, Span, &'s [Token]>;
 type Extra<'s> = extra::Full<Fault, SimpleState<Source<'s>>, ()>;
@@ -81,7 +80,7 @@ pub fn parse_each(text: &str, emit: impl FnMut(Span, Parse)) {
 
 /// As [`parse`], where one of the pieces was read before an edit inside it.
 pub fn parse_again(text: &str, earlier: Option<Earlier<'_>>) -> Vec<(Span, Parse)> {
-    let tokens = lex(text);
+    let tokens = lex_again(text, earlier.as_ref());
     let mut parses = Vec::new();
     parse_cut(text, &tokens, &cut(text, &tokens), earlier, |span, parse| parses.push((span, parse)));
     parses

@@ -2,11 +2,11 @@
 
 use super::Parse;
 use super::errors;
-use super::reuse::{Earlier, Known, known_actions};
+use super::reuse::{Known, known_actions};
 use super::slot::Fault;
 use crate::ast::Entity;
 use crate::cut::misspelt_beginning;
-use crate::{Span, Token, TokenKind};
+use crate::{Earlier, Span, Token, TokenKind};
 
 /// A piece of a text that is ready for the parser.
 pub(super) struct Piece<'s> {

@@ -8,23 +8,10 @@ use chumsky::prelude::{Parser, custom};
 
 use super::piece::without_trivia;
 use super::slot::Fault;
-use super::{Extra, Input, Parse};
+use super::{Extra, Input};
 use crate::ast::{Action, Entity};
 use crate::shift::Shift;
-use crate::{Span, Token};
-
-/// What an entity was before an edit.
-#[derive(Debug, Clone, Copy)]
-pub struct Earlier<'a> {
-    /// What was read.
-    pub parse: &'a Parse,
-    /// Where its text is now.
-    pub now: Span,
-    /// The range of its earlier text that was replaced.
-    pub edited: Span,
-    /// How much longer its text is now, in bytes.
-    pub growth: i64,
-}
+use crate::{Earlier, Span, Token};
 
 /// The tokens after an action that must be as they were, too. The rules look at two of them.
 const MARGIN: usize = 8;
@@ -151,7 +138,7 @@ pub(super) fn known_action<'s>() -> impl Parser<'s, Input<'s>, Action, Extra<'s>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{TokenKind, lex, parse, parse_again};
+    use crate::{Parse, TokenKind, lex, parse, parse_again};
 
     const PROGRAM: &str = "movement m of rover {\n  move 3.2 meters at 18.7\n  turn left until { front, back }\n  \
         repeat 5 times {\n    turn right 45.0 // a comment\n    if { front } detect within 1.0 meters {\n      \
@@ -161,7 +148,7 @@ mod tests {
         move 143.3 centimeters at 2.4\n  turn left 22.5\n  do other\n  slam\n  move 1 meters\n  turn left\n}\n";
 
     /// Words that mean much where they do not belong.
-    const TYPED: [&str; 16] = [
+    const TYPED: [&str; 25] = [
         " ",
         "{",
         "}",
@@ -173,11 +160,20 @@ mod tests {
         "3.5 ",
         "front ",
         "/*",
+        "*/",
         "// x\n",
         "at ",
         "\"",
         "repeat 2 times { slam } ",
         "sensor s ",
+        "-1",
+        ".",
+        "’s",
+        "-",
+        "ä",
+        "\n",
+        "/",
+        "# ",
     ];
 
     fn again(before: &(Span, Parse), edited: Span, typed: &str, text: &str) -> Vec<(Span, Parse)> {
@@ -197,7 +193,7 @@ mod tests {
             let place = *place;
             let mut text = PROGRAM.to_owned();
             let mut before = parse(&text);
-            let steps = (0..4).map(|step| (TYPED[(number + step * 5) % TYPED.len()], step % 2 == 0));
+            let steps = (0..4).map(|step| (TYPED[(number + step * 7) % TYPED.len()], step % 2 == 0));
             for (typed, replaces) in steps {
                 let [only] = &before[..] else { break };
                 let end = (place + 5 * u32::from(replaces)).min(only.0.end);

@@ -1,0 +1,71 @@
+//! An entity as it was before an edit, and its tokens after it.
+
+use crate::lexer::{Token, lex_unless};
+use crate::{Parse, Span};
+
+/// What an entity was before an edit.
+#[derive(Debug, Clone, Copy)]
+pub struct Earlier<'a> {
+    /// What was read.
+    pub parse: &'a Parse,
+    /// Where its text is now.
+    pub now: Span,
+    /// The range of its earlier text that was replaced.
+    pub edited: Span,
+    /// How much longer its text is now, in bytes.
+    pub growth: i64,
+}
+
+/// How far behind a token the lexer may look to find its end, in bytes: a sign and a letter, which belong to a name
+/// together, have seven.
+const LOOKAHEAD: u32 = 16;
+
+/// As [`lex`](crate::lex), of a text in which an entity may be known as it was before an edit: of that, only the tokens are
+/// read that the edit may have changed.
+pub fn lex_again(text: &str, earlier: Option<&Earlier<'_>>) -> Vec<Token> {
+    lex_unless(text, |start, before| {
+        let previous = before.last().map(|(_, last)| last.end);
+        earlier.and_then(|earlier| earlier.tokens_at(start, previous))
+    })
+}
+
+impl<'a> Earlier<'a> {
+    /// The tokens from `start` on that are as they were, with how far they have moved, where a token begins there after one
+    /// that ends at `previous`.
+    fn tokens_at(&self, start: u32, previous: Option<u32>) -> Option<(&'a [Token], i64)> {
+        let tokens = &self.parse.tokens;
+        let offset = i64::from(self.now.start);
+        if start == self.now.start {
+            let end = tokens.partition_point(|(_, span)| span.end + LOOKAHEAD <= self.edited.start);
+            return (end > 0).then(|| (&tokens[..end], offset));
+        }
+        let then = u32::try_from(i64::from(start) - offset - self.growth).ok()?;
+        let index = tokens.partition_point(|(_, span)| span.start < then);
+        let begins = tokens.get(index).is_some_and(|(_, span)| span.start == then);
+        // Tokens without a gap between them may be one.
+        let gap = index.checked_sub(1).is_some_and(|last| tokens[last].1.end < then);
+        let is_after = then >= self.edited.end && gap && previous.is_some_and(|end| end < start);
+        (begins && is_after).then(|| (&tokens[index..], offset + self.growth))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{lex, parse};
+
+    /// Texts before and after their first character is replaced by a space.
+    #[test]
+    fn what_tokens_have_been_joined_to_counts() {
+        for text in ["4e-5 slam", "r-1 slam", "/*/ slam", "\"x\" slam"] {
+            let text = format!("movement m of r {{ move {text} }}");
+            let place = u32::try_from(text.find("move ").unwrap() + 5).unwrap();
+            let (span, before) = parse(&text).remove(0);
+            let edited = Span::new(place, place + 1);
+            let mut after = text.clone();
+            after.replace_range(std::ops::Range::from(edited), " ");
+            let earlier = Earlier { parse: &before, now: span, edited, growth: 0 };
+            assert_eq!(lex_again(&after, Some(&earlier)), lex(&after), "{text}");
+        }
+    }
+}
