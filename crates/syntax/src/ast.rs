@@ -248,81 +248,100 @@ pub struct Action {
     pub span: Span,
 }
 
+/// What an action is made of, whatever its kind.
+#[derive(Default)]
+struct Parts<'a> {
+    numbers: [Option<&'a Number>; 3],
+    count: Option<&'a Number>,
+    until: Option<&'a Until>,
+    branches: &'a [Branch],
+    /// The block that is after those of the branches.
+    block: Option<&'a Block>,
+    done: Option<&'a Name>,
+}
+
+impl ActionKind {
+    /// The keyword that it begins with, and its parts: all that is asked of any action, so that a new one says it here.
+    fn parts(&self) -> (TokenKind, Parts<'_>) {
+        fn value(clause: Option<&SpeedClause>) -> Option<&Number> {
+            clause?.value.as_ref()
+        }
+        match self {
+            Self::Move(Move { distance, speed, until, .. }) => {
+                let numbers = [distance.as_ref(), value(speed.as_ref()), None];
+                (TokenKind::Move, Parts { numbers, until: until.as_ref(), ..Parts::default() })
+            }
+            Self::Turn(Turn { angle, circle, speed, until, .. }) => {
+                let radius = circle.as_ref().and_then(|circle| circle.radius.as_ref());
+                let numbers = [angle.as_ref(), radius, value(speed.as_ref())];
+                (TokenKind::Turn, Parts { numbers, until: until.as_ref(), ..Parts::default() })
+            }
+            Self::Wait(Wait { seconds, until }) => {
+                let numbers = [seconds.as_ref(), None, None];
+                (TokenKind::Wait, Parts { numbers, until: until.as_ref(), ..Parts::default() })
+            }
+            Self::Repeat(Repeat { rounds, block }) => {
+                let (count, until) = match rounds {
+                    Some(Rounds::Times(count)) => (Some(count), None),
+                    Some(Rounds::Until(until)) => (None, Some(until)),
+                    None => (None, None),
+                };
+                (TokenKind::Repeat, Parts { count, until, block: block.as_ref(), ..Parts::default() })
+            }
+            Self::If(If { branches, otherwise }) => {
+                (TokenKind::If, Parts { branches, block: otherwise.as_ref(), ..Parts::default() })
+            }
+            Self::Do(Do { movement }) => {
+                (TokenKind::Do, Parts { done: movement.as_ref(), ..Parts::default() })
+            }
+            Self::Slam => (TokenKind::Slam, Parts::default()),
+        }
+    }
+}
+
 impl Action {
+    fn parts(&self) -> Parts<'_> {
+        self.kind.parts().1
+    }
+
+    /// The keyword that it begins with.
+    pub fn keyword(&self) -> TokenKind {
+        self.kind.parts().0
+    }
+
     /// Returns the condition that decides when it ends: that of its `until`.
     pub fn until(&self) -> Option<&Condition> {
-        match &self.kind {
-            ActionKind::Move(Move { until, .. })
-            | ActionKind::Turn(Turn { until, .. })
-            | ActionKind::Wait(Wait { until, .. }) => until.as_ref().map(|clause| &clause.condition),
-            ActionKind::Repeat(Repeat { rounds: Some(Rounds::Until(clause)), .. }) => Some(&clause.condition),
-            ActionKind::Repeat(_) | ActionKind::If(_) | ActionKind::Do(_) | ActionKind::Slam => None,
-        }
+        self.parts().until.map(|clause| &clause.condition)
     }
 
     /// The conditions in it, in the order of the text; those of the actions in its blocks are not among them.
     pub fn conditions(&self) -> impl Iterator<Item = &Condition> {
-        let branches = match &self.kind {
-            ActionKind::If(choice) => choice.branches.as_slice(),
-            _ => &[],
-        };
-        self.until().into_iter().chain(branches.iter().filter_map(|branch| branch.condition.as_ref()))
+        let Parts { until, branches, .. } = self.parts();
+        let until = until.map(|clause| &clause.condition);
+        until.into_iter().chain(branches.iter().filter_map(|branch| branch.condition.as_ref()))
     }
 
     /// The blocks in it, in the order of the text.
     pub fn blocks(&self) -> impl Iterator<Item = &Block> {
-        let (one, branches, last) = match &self.kind {
-            ActionKind::Repeat(repeat) => (repeat.block.as_ref(), [].as_slice(), None),
-            ActionKind::If(choice) => (None, choice.branches.as_slice(), choice.otherwise.as_ref()),
-            ActionKind::Move(_)
-            | ActionKind::Turn(_)
-            | ActionKind::Wait(_)
-            | ActionKind::Do(_)
-            | ActionKind::Slam => (None, [].as_slice(), None),
-        };
-        one.into_iter().chain(branches.iter().filter_map(|branch| branch.block.as_ref())).chain(last)
+        let Parts { branches, block, .. } = self.parts();
+        branches.iter().filter_map(|branch| branch.block.as_ref()).chain(block)
     }
 
     /// The numbers in it, in the order of the text; those of conditions and of the actions in its blocks are not among
     /// them.
     pub fn numbers(&self) -> impl Iterator<Item = &Number> {
-        fn value(clause: Option<&SpeedClause>) -> Option<&Number> {
-            clause?.value.as_ref()
-        }
-        let numbers = match &self.kind {
-            ActionKind::Move(step) => [step.distance.as_ref(), value(step.speed.as_ref()), None],
-            ActionKind::Turn(turn) => {
-                let radius = turn.circle.as_ref().and_then(|circle| circle.radius.as_ref());
-                [turn.angle.as_ref(), radius, value(turn.speed.as_ref())]
-            }
-            ActionKind::Wait(wait) => [wait.seconds.as_ref(), None, None],
-            ActionKind::Repeat(Repeat { rounds: Some(Rounds::Times(count)), .. }) => {
-                [Some(count), None, None]
-            }
-            ActionKind::Repeat(_) | ActionKind::If(_) | ActionKind::Do(_) | ActionKind::Slam => [None; 3],
-        };
-        numbers.into_iter().flatten()
+        let Parts { numbers, count, .. } = self.parts();
+        numbers.into_iter().flatten().chain(count)
+    }
+
+    /// How many times it does something.
+    pub fn count(&self) -> Option<&Number> {
+        self.parts().count
     }
 
     /// The movement that a `do` names.
     pub fn done(&self) -> Option<&Name> {
-        match &self.kind {
-            ActionKind::Do(call) => call.movement.as_ref(),
-            _ => None,
-        }
-    }
-
-    /// The keyword that it begins with.
-    pub fn keyword(&self) -> TokenKind {
-        match &self.kind {
-            ActionKind::Move(_) => TokenKind::Move,
-            ActionKind::Turn(_) => TokenKind::Turn,
-            ActionKind::Wait(_) => TokenKind::Wait,
-            ActionKind::Repeat(_) => TokenKind::Repeat,
-            ActionKind::If(_) => TokenKind::If,
-            ActionKind::Do(_) => TokenKind::Do,
-            ActionKind::Slam => TokenKind::Slam,
-        }
+        self.parts().done
     }
 }
 
@@ -346,11 +365,12 @@ impl<'a> Iterator for Nested<'a> {
     fn next(&mut self) -> Option<&'a Action> {
         loop {
             if let Some(action) = self.open.last_mut()?.next() {
+                let mut blocks = action.blocks().peekable();
                 // Most actions have none.
-                if matches!(action.kind, ActionKind::Repeat(_) | ActionKind::If(_)) {
+                if blocks.peek().is_some() {
                     let depth = self.open.len();
                     let first = self.blocks.len();
-                    self.blocks.extend(action.blocks().map(|block| (depth, block)));
+                    self.blocks.extend(blocks.map(|block| (depth, block)));
                     self.blocks[first..].reverse();
                     self.enter(depth);
                 }

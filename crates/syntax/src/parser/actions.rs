@@ -63,23 +63,23 @@ fn action<'s>(block: &Rule<'s, Block>) -> Actions<'s> {
     let until = until(NEXT);
     let (waits, repeats) = (after_wait(&until), after_repeat(block));
     let condition_and_block = condition(OPEN.or(NEXT)).then(block.clone()).boxed();
-    let ifs = |word| if_action(word, &condition_and_block, block);
-    let exact = |word| just(word).ignored();
+    // Those that a slip of spelling is understood of, by what follows.
+    let spelt = |word: fn(TokenKind) -> Rule<'s, ()>| {
+        choice((
+            word(TokenKind::Wait).ignore_then(waits.clone()),
+            word(TokenKind::Repeat).ignore_then(repeats.clone()),
+            if_action(word(TokenKind::If), &condition_and_block, block),
+        ))
+    };
     let kinds = choice((
         move_action(&until),
         turn_action(&until),
-        exact(TokenKind::Wait).ignore_then(waits.clone()),
-        exact(TokenKind::Repeat).ignore_then(repeats.clone()),
-        ifs(exact(TokenKind::If).boxed()),
+        spelt(|word| just(word).ignored().boxed()),
         do_action(),
-        just(TokenKind::Slam).to(ActionKind::Slam).boxed(),
+        just(TokenKind::Slam).to(ActionKind::Slam),
     ));
     let known = choice((known_action(), spanned(kinds))).labelled(Expected::Action);
-    let misspelt = spanned(choice((
-        misspelt_action(TokenKind::Wait).ignore_then(waits),
-        misspelt_action(TokenKind::Repeat).ignore_then(repeats),
-        ifs(misspelt_action(TokenKind::If)),
-    )));
+    let misspelt = spanned(spelt(misspelt_action));
     known
         .map(|action| vec![action])
         .recover_with(via_parser(misspelt.map(|action| vec![action])))
@@ -193,21 +193,30 @@ fn in_reverse<'s>() -> Rule<'s, Span> {
         .boxed()
 }
 
+/// `2 seconds`, before one of `next`, or of `later` if that is missing.
+fn amount<'s>(
+    quantity: Quantity,
+    word: TokenKind,
+    next: TokenSet,
+    later: TokenSet,
+) -> Rule<'s, Option<Number>> {
+    slot_before(number(quantity), NUMBER, TokenSet::of(&[word]).or(next).or(later))
+        .then_ignore(keyword(word, next, later))
+        .boxed()
+}
+
 fn after_wait<'s>(until: &Rule<'s, Until>) -> Rule<'s, ActionKind> {
-    let long =
-        slot_before(number(Quantity::Time), NUMBER, TokenSet::of(&[TokenKind::Seconds]).or(UNTIL).or(NEXT))
-            .then_ignore(keyword(TokenKind::Seconds, NEXT.or(UNTIL), NEXT.or(UNTIL)))
-            .then(until.clone().or_not())
-            .map(|(seconds, until)| Wait { seconds, until });
+    let later = NEXT.or(UNTIL);
+    let long = amount(Quantity::Time, TokenKind::Seconds, later, later)
+        .then(until.clone().or_not())
+        .map(|(seconds, until)| Wait { seconds, until });
     let open_ended = until.clone().map(|until| Wait { seconds: None, until: Some(until) });
     choice((open_ended, long)).map(ActionKind::Wait).boxed()
 }
 
 fn after_repeat<'s>(block: &Rule<'s, Block>) -> Rule<'s, ActionKind> {
     let later = OPEN.or(NEXT);
-    let times = slot_before(number(Quantity::Count), NUMBER, TokenSet::of(&[TokenKind::Times]).or(later))
-        .then_ignore(keyword(TokenKind::Times, OPEN, NEXT))
-        .map(|count| count.map(Rounds::Times));
+    let times = amount(Quantity::Count, TokenKind::Times, OPEN, NEXT).map(|count| count.map(Rounds::Times));
     let open_ended = until(later).map(|until| Some(Rounds::Until(until)));
     choice((open_ended, times))
         .then(block.clone())
