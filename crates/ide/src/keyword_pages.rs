@@ -30,7 +30,6 @@ const MOVEMENT_SHAPE: &str = "[parallel] movement NAME of ROBOT { ACTIONS }";
 const ENVIRONMENT_SHAPE: &str =
     "environment NAME [with ip IP] has { ROBOTS } robots [with { MOVEMENTS } moves]";
 const MOVE: &str = "move DISTANCE meters | centimeters [at SPEED]";
-const TIMES: &str = "repeat COUNT times { ACTIONS }";
 const REVERSE: &str =
     "turn left | right [DEGREES] with radius DISTANCE meters | centimeters [at SPEED] in reverse";
 const TYPE: &str = "type tw | fw | fwh";
@@ -164,7 +163,7 @@ pub fn keyword_page(token: TokenKind) -> Option<KeywordPage> {
             "repeat 4 times {\n  move 1 meters\n  turn left\n}",
         ),
         TokenKind::Times => page(
-            TIMES,
+            "repeat COUNT times { ACTIONS }",
             "Ends the number of rounds, a whole number from 1 to 10 000.",
             "repeat 4 times { turn left 45 }",
         ),

@@ -181,6 +181,10 @@ struct Action {
     only_before: TokenSet,
     /// See [`TokenKind::examples`].
     examples: &'static [&'static str],
+    /// See [`TokenKind::details`].
+    details: &'static [&'static str],
+    /// See [`TokenKind::is_in_article`].
+    in_article: bool,
 }
 
 const AMOUNT: TokenSet = TokenKind::NUMBERS.or(TokenSet::of(&[TokenKind::Until]));
@@ -191,29 +195,51 @@ const ACTIONS: &[Action] = &[
         keyword: TokenKind::Move,
         only_before: NOTHING,
         examples: &["move 4.0 meters", "move 40 centimeters at 9.0"],
+        details: &[],
+        in_article: true,
     },
     Action {
         keyword: TokenKind::Turn,
         only_before: NOTHING,
         examples: &["turn left 90", "turn right until { SENSORS }"],
+        details: &[],
+        in_article: true,
     },
     Action {
         keyword: TokenKind::Wait,
         only_before: AMOUNT,
         examples: &["wait 2 seconds", "wait until { SENSORS } clear"],
+        details: &["stands still", "stands still until no sensor detects an obstacle"],
+        in_article: false,
     },
     Action {
         keyword: TokenKind::Repeat,
         only_before: AMOUNT,
         examples: &["repeat 4 times { ACTIONS }", "repeat until { SENSORS } detect { ACTIONS }"],
+        details: &["a number of times", "until a sensor detects an obstacle"],
+        in_article: false,
     },
     Action {
         keyword: TokenKind::If,
         only_before: TokenSet::of(&[TokenKind::OpenBrace]),
         examples: &["if { SENSORS } detect { ACTIONS }"],
+        details: &["only if a sensor detects an obstacle"],
+        in_article: false,
     },
-    Action { keyword: TokenKind::Do, only_before: NOTHING, examples: &["do MOVEMENT"] },
-    Action { keyword: TokenKind::Slam, only_before: NOTHING, examples: &["slam"] },
+    Action {
+        keyword: TokenKind::Do,
+        only_before: NOTHING,
+        examples: &["do MOVEMENT"],
+        details: &["another movement of the same robot"],
+        in_article: false,
+    },
+    Action {
+        keyword: TokenKind::Slam,
+        only_before: NOTHING,
+        examples: &["slam"],
+        details: &[],
+        in_article: true,
+    },
 ];
 
 const NOTHING: TokenSet = TokenSet(0);
@@ -268,6 +294,21 @@ impl TokenKind {
     /// Returns examples of the statement that an action's keyword begins; none for other tokens.
     pub fn examples(self) -> &'static [&'static str] {
         self.action().map_or(&[], |action| action.examples)
+    }
+
+    /// What the statement of each of the examples does, in a list of them; none where other words than those are listed.
+    pub fn details(self) -> &'static [&'static str] {
+        self.action().map_or(&[], |action| action.details)
+    }
+
+    /// Returns whether it begins an action with a block.
+    pub fn begins_block(self) -> bool {
+        self.examples().iter().any(|example| example.contains("{ ACTIONS }"))
+    }
+
+    /// Returns whether it begins an action that the article has.
+    pub fn is_in_article(self) -> bool {
+        self.action().is_some_and(|action| action.in_article)
     }
 
     /// What follows the keyword of an action and never a name: before it, a keyword that can be a name is none. Nothing for

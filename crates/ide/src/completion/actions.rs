@@ -13,21 +13,32 @@ use super::snippets::{Snippet, completions, tab_stop};
 /// A block with the last tab stop in it.
 const BLOCK: &str = "{\n  $0\n}";
 
+/// What stands for other text in the examples of actions.
+const SENSORS: &str = "{ SENSORS }";
+const ACTIONS: &str = "{ ACTIONS }";
+const MOVEMENT: &str = "MOVEMENT";
+
 /// Complete actions, those like the last action of their kind first.
 pub(super) fn actions(context: &CompletionContext<'_>) -> Vec<Completion> {
     let defaults = Defaults::for_part(context);
     let (moves, turns) = (moves(&defaults), turns(&defaults));
     // Moves and turns usually alternate.
     let moves_and_turns = if defaults.follows_a_move() { [turns, moves] } else { [moves, turns] };
-    let others = [repeats(&defaults), waits(&defaults), choices(&defaults), calls(context)];
-    completions(context, moves_and_turns.into_iter().chain(others).flatten().collect())
+    let mut others = TokenKind::ACTIONS;
+    others.sort_by_key(|keyword| *keyword != TokenKind::Repeat);
+    let others = others.into_iter().flat_map(|keyword| examples(context, &defaults, keyword));
+    completions(context, moves_and_turns.into_iter().flatten().chain(others).collect())
 }
 
-/// `{ front } detect`, for the robot's sensors; `None` if it has none.
-fn condition(defaults: &Defaults<'_>, stop: u32, state: SensorState) -> Option<String> {
+/// `{ front }`, for the robot's sensors; `None` if it has none.
+fn list(defaults: &Defaults<'_>) -> Option<String> {
     let sensors = defaults.sensors_to_wait_for();
-    let list = tab_stop(stop, &sensors.join(", "));
-    (!sensors.is_empty()).then(|| format!("{{ {list} }} {}", state_word(state)))
+    (!sensors.is_empty()).then(|| format!("{{ {} }}", tab_stop(1, &sensors.join(", "))))
+}
+
+/// `{ front } detect`
+fn condition(defaults: &Defaults<'_>, state: SensorState) -> Option<String> {
+    Some(format!("{} {}", list(defaults)?, state_word(state)))
 }
 
 fn state_word(state: SensorState) -> &'static str {
@@ -38,50 +49,37 @@ fn state_word(state: SensorState) -> &'static str {
     token.spelling().unwrap_or_default()
 }
 
-fn repeats(defaults: &Defaults<'_>) -> Vec<Snippet> {
-    let count = defaults.last_count();
-    let times = Snippet::new(
-        "repeat … times { … }",
-        "a number of times",
-        format!("repeat ${{1:{count}}} times {BLOCK}"),
-    );
-    let until = condition(defaults, 1, SensorState::Detect).map(|condition| {
-        let label = "repeat until … detect { … }";
-        Snippet::new(label, "until a sensor detects an obstacle", format!("repeat until {condition} {BLOCK}"))
-    });
-    std::iter::once(times).chain(until).collect()
+/// The examples of an action that have a detail, each with a tab stop for what differs.
+fn examples(context: &CompletionContext<'_>, defaults: &Defaults<'_>, keyword: TokenKind) -> Vec<Snippet> {
+    let examples = keyword.examples().iter().zip(keyword.details());
+    let snippet = |(example, detail): (&&str, &&'static str)| {
+        let (placeholder, stop) = stop(context, defaults, keyword, example)?;
+        let label = example.replace(placeholder, "…").replace(ACTIONS, "{ … }");
+        let insert = example.replace(placeholder, &stop).replace(ACTIONS, BLOCK);
+        Some(Snippet::new(&label, detail, insert))
+    };
+    examples.filter_map(snippet).collect()
 }
 
-fn waits(defaults: &Defaults<'_>) -> Vec<Snippet> {
-    let seconds = defaults.last_time();
-    let timed = Snippet::new("wait … seconds", "stands still", format!("wait ${{1:{seconds}}} seconds"));
-    let until = condition(defaults, 1, SensorState::Clear).map(|condition| {
-        let detail = "stands still until no sensor detects an obstacle";
-        Snippet::new("wait until … clear", detail, format!("wait until {condition}"))
-    });
-    std::iter::once(timed).chain(until).collect()
-}
-
-fn choices(defaults: &Defaults<'_>) -> Vec<Snippet> {
-    let choice = condition(defaults, 1, SensorState::Detect).map(|condition| {
-        let label = "if … detect { … }";
-        Snippet::new(label, "only if a sensor detects an obstacle", format!("if {condition} {BLOCK}"))
-    });
-    choice.into_iter().collect()
-}
-
-/// The movement that is done, if there is one to do.
-fn calls(context: &CompletionContext<'_>) -> Vec<Snippet> {
-    // To look at all movements takes time.
-    if !"do".starts_with(&context.typed) {
-        return Vec::new();
+/// What stands in an example for something else, and the tab stop for that; `None` if there is nothing to write there.
+fn stop<'e>(
+    context: &CompletionContext<'_>,
+    defaults: &Defaults<'_>,
+    keyword: TokenKind,
+    example: &'e str,
+) -> Option<(&'e str, String)> {
+    if example.contains(SENSORS) {
+        return Some((SENSORS, list(defaults)?));
     }
-    let first = names::to_do(context).into_iter().next();
-    let call = first.map(|name| {
-        let insert = format!("do ${{1:{}}}", pydslrep_syntax::escape(&name));
-        Snippet::new("do …", "another movement of the same robot", insert)
-    });
-    call.into_iter().collect()
+    if example.contains(MOVEMENT) {
+        // To look at all movements takes time.
+        let is_wanted = keyword.spelling().is_some_and(|word| word.starts_with(&context.typed));
+        let first = is_wanted.then(|| names::to_do(context).into_iter().next())??;
+        return Some((MOVEMENT, tab_stop(1, &pydslrep_syntax::escape(&first))));
+    }
+    let number = example.split(' ').find(|word| word.starts_with(|c: char| c.is_ascii_digit()))?;
+    let last = defaults.last_number(keyword);
+    Some((number, tab_stop(1, last.as_deref().unwrap_or(number))))
 }
 
 fn moves(defaults: &Defaults<'_>) -> Vec<Snippet> {
@@ -106,7 +104,7 @@ fn moves(defaults: &Defaults<'_>) -> Vec<Snippet> {
         }
     };
     let mut snippets: Vec<Snippet> = shapes.map(snippet).into();
-    if let Some(condition) = condition(defaults, 1, SensorState::Detect) {
+    if let Some(condition) = condition(defaults, SensorState::Detect) {
         let detail = "straight ahead until a sensor detects an obstacle";
         let until = Snippet::new("move until … detect", detail, format!("move until {condition}"));
         snippets.insert(if last.is_until { 0 } else { snippets.len() }, until);
@@ -193,7 +191,7 @@ pub(super) fn circle(context: &CompletionContext<'_>) -> Vec<Completion> {
 pub(super) fn until(context: &CompletionContext<'_>) -> Vec<Completion> {
     let defaults = Defaults::for_part(context);
     let snippet = |state| {
-        let insert = format!("until {}", condition(&defaults, 1, state)?);
+        let insert = format!("until {}", condition(&defaults, state)?);
         let (label, detail) = match state {
             SensorState::Clear => ("until … clear", "until no sensor detects an obstacle"),
             SensorState::Detect => ("until … detect", "until a sensor detects an obstacle"),
@@ -210,7 +208,10 @@ pub(super) fn until(context: &CompletionContext<'_>) -> Vec<Completion> {
 
 /// The rest of a `repeat`, if its block is not there yet.
 pub(super) fn rounds(context: &CompletionContext<'_>) -> Vec<Completion> {
-    if context.next_token() == Some(TokenKind::OpenBrace) {
+    // The keyword is before the number.
+    let keyword = context.before.iter().rev().nth(1);
+    let has_block = keyword.is_none_or(|(word, _)| !word.is_action() || word.begins_block());
+    if context.next_token() == Some(TokenKind::OpenBrace) || !has_block {
         return Vec::new();
     }
     completions(context, vec![Snippet::new("times { … }", "what is repeated", format!("times {BLOCK}"))])

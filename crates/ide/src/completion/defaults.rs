@@ -4,8 +4,7 @@
 
 use pydslrep_analysis::{Database, EntityId};
 use pydslrep_syntax::ast::{
-    Action, ActionKind, Direction, Drive, Entity, Move, Movement, Repeat, Robot, Rounds, Turn, Unit, Wheel,
-    nested,
+    Action, ActionKind, Direction, Drive, Entity, Move, Movement, Robot, Turn, Unit, Wheel, nested,
 };
 use pydslrep_syntax::{EntityKind, Span, TokenKind, escape};
 use smol_str::SmolStr;
@@ -299,22 +298,12 @@ impl<'a> Defaults<'a> {
         last.unwrap_or_else(|| ("1.0".to_owned(), TokenKind::Meters.spelling().unwrap_or_default()))
     }
 
-    /// Returns the number of rounds of the last `repeat`, as written.
-    pub(super) fn last_count(&self) -> String {
-        let last = self.last_action(|action, written| match &action.kind {
-            ActionKind::Repeat(Repeat { rounds: Some(Rounds::Times(count)), .. }) => written(count.span),
-            _ => None,
-        });
-        last.unwrap_or_else(|| "4".to_owned())
-    }
-
-    /// Returns the duration of the last `wait`, as written.
-    pub(super) fn last_time(&self) -> String {
-        let last = self.last_action(|action, written| match &action.kind {
-            ActionKind::Wait(wait) => written(wait.seconds.as_ref()?.span),
-            _ => None,
-        });
-        last.unwrap_or_else(|| "2".to_owned())
+    /// Returns the number of the last action that begins with a keyword, as written.
+    pub(super) fn last_number(&self, keyword: TokenKind) -> Option<String> {
+        self.last_action(|action, written| {
+            let number = (action.keyword() == keyword).then(|| action.numbers().next())??;
+            written(number.span)
+        })
     }
 
     /// The sensors of the last `until` if the robot has all of them, or all sensors of the robot.

@@ -99,8 +99,9 @@ fn keywords_in(word: &str) -> Vec<Vec<&str>> {
 
 /// Returns whether a word is divided after this keyword: after those that many names begin with, it is not.
 fn divides(token: TokenKind) -> bool {
-    use TokenKind::{Bumper, Distance, Import, Repeat, Seconds, Times, Wait};
-    token.is_keyword() || matches!(token, Bumper | Distance | Import | Repeat | Seconds | Times | Wait)
+    use TokenKind::{Bumper, Distance, Import, Seconds, Times};
+    let before_number = token.only_before().has(TokenKind::Integer);
+    token.is_keyword() || before_number || matches!(token, Bumper | Distance | Import | Seconds | Times)
 }
 
 fn is_keyword(word: &str) -> bool {
