@@ -248,40 +248,49 @@ pub struct Condition {
     pub within: Option<f64>,
 }
 
-impl ResolvedAction {
-    /// The actions in its blocks, block by block.
-    pub fn blocks(&self) -> Vec<&[ResolvedAction]> {
-        match &self.kind {
-            ResolvedActionKind::Repeat { body, .. } | ResolvedActionKind::RepeatUntil { body, .. } => {
-                vec![body]
+/// What the kind of an action is made of.
+#[derive(Default)]
+struct Parts<'a> {
+    until: Option<&'a Condition>,
+    branches: &'a [Branch],
+    /// The block that is after those of the branches.
+    body: Option<&'a [ResolvedAction]>,
+    /// The sensors that it asks without a condition.
+    sensors: &'a [usize],
+}
+
+impl ResolvedActionKind {
+    fn parts(&self) -> Parts<'_> {
+        match self {
+            Self::Move { until, .. } | Self::Turn { until, .. } | Self::Wait { until, .. } => {
+                Parts { until: until.as_ref(), ..Parts::default() }
             }
-            ResolvedActionKind::If { branches, otherwise } => {
-                branches.iter().map(|branch| branch.body.as_slice()).chain([otherwise.as_slice()]).collect()
+            Self::TurnUntil { sensors, .. } => Parts { sensors, ..Parts::default() },
+            Self::Repeat { body, .. } => Parts { body: Some(body), ..Parts::default() },
+            Self::RepeatUntil { until, body } => {
+                Parts { until: Some(until), body: Some(body), ..Parts::default() }
             }
-            ResolvedActionKind::Move { .. }
-            | ResolvedActionKind::Turn { .. }
-            | ResolvedActionKind::TurnUntil { .. }
-            | ResolvedActionKind::Wait { .. }
-            | ResolvedActionKind::Do { .. }
-            | ResolvedActionKind::Slam => Vec::new(),
+            Self::If { branches, otherwise } => Parts { branches, body: Some(otherwise), ..Parts::default() },
+            Self::Do { .. } | Self::Slam => Parts::default(),
         }
     }
 
+    /// The actions in its blocks, block by block.
+    pub fn blocks(&self) -> impl DoubleEndedIterator<Item = &[ResolvedAction]> {
+        let Parts { branches, body, .. } = self.parts();
+        branches.iter().map(|branch| branch.body.as_slice()).chain(body)
+    }
+
     /// The conditions that it asks itself.
-    pub fn conditions(&self) -> Vec<&Condition> {
-        match &self.kind {
-            ResolvedActionKind::Move { until, .. }
-            | ResolvedActionKind::Turn { until, .. }
-            | ResolvedActionKind::Wait { until, .. } => until.iter().collect(),
-            ResolvedActionKind::RepeatUntil { until, .. } => vec![until],
-            ResolvedActionKind::If { branches, .. } => {
-                branches.iter().map(|branch| &branch.condition).collect()
-            }
-            ResolvedActionKind::TurnUntil { .. }
-            | ResolvedActionKind::Repeat { .. }
-            | ResolvedActionKind::Do { .. }
-            | ResolvedActionKind::Slam => Vec::new(),
-        }
+    pub fn conditions(&self) -> impl Iterator<Item = &Condition> {
+        let Parts { until, branches, .. } = self.parts();
+        until.into_iter().chain(branches.iter().map(|branch| &branch.condition))
+    }
+
+    /// Indices into [`Robot::sensors`]: those that it asks itself. To explore, it may ask others as well.
+    pub fn sensors(&self) -> impl Iterator<Item = usize> {
+        let of_conditions = self.conditions().flat_map(|condition| &condition.sensors);
+        of_conditions.chain(self.parts().sensors).copied()
     }
 }
 
@@ -295,7 +304,7 @@ pub fn nested(actions: &[ResolvedAction]) -> Vec<&ResolvedAction> {
             continue;
         };
         all.push(action);
-        open.extend(action.blocks().into_iter().rev().map(<[ResolvedAction]>::iter));
+        open.extend(action.kind.blocks().rev().map(<[ResolvedAction]>::iter));
     }
     all
 }

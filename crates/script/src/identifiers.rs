@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeSet, HashSet};
 
-use pydslrep_analysis::environment::{Environment, ResolvedAction, nested};
+use pydslrep_analysis::environment::{Environment, nested};
 use pydslrep_kinematics::Drive;
 
 /// Everything that a script may import from the runtime, in the order of imports.
@@ -22,7 +22,7 @@ pub(crate) const DETECTS: &str = "detects";
 /// Returns the functions that an environment's conditions call.
 pub(crate) fn conditions(environment: &Environment) -> BTreeSet<&'static str> {
     let actions = environment.movements.iter().flat_map(|movement| nested(&movement.actions));
-    let conditions = actions.flat_map(ResolvedAction::conditions);
+    let conditions = actions.flat_map(|action| action.kind.conditions());
     conditions.map(|condition| if condition.detect { DETECTS } else { CLEAR }).collect()
 }
 

@@ -174,21 +174,11 @@ pub fn used_sensors(environment: &Environment) -> Vec<BTreeSet<usize>> {
     for movement in &environment.movements {
         let used = &mut used[movement.robot];
         for action in nested(&movement.actions) {
-            used.extend(action.conditions().into_iter().flat_map(|condition| &condition.sensors));
-            match &action.kind {
-                ResolvedActionKind::TurnUntil { sensors, .. } => used.extend(sensors),
-                ResolvedActionKind::Slam => {
-                    let sensors = environment.robots[movement.robot].sensors.iter().enumerate();
-                    let distances = sensors.filter(|(_, sensor)| sensor.kind == SensorKind::Distance);
-                    used.extend(distances.map(|(index, _)| index));
-                }
-                ResolvedActionKind::Move { .. }
-                | ResolvedActionKind::Turn { .. }
-                | ResolvedActionKind::Wait { .. }
-                | ResolvedActionKind::Repeat { .. }
-                | ResolvedActionKind::RepeatUntil { .. }
-                | ResolvedActionKind::If { .. }
-                | ResolvedActionKind::Do { .. } => {}
+            used.extend(action.kind.sensors());
+            if action.kind == ResolvedActionKind::Slam {
+                let sensors = environment.robots[movement.robot].sensors.iter().enumerate();
+                let distances = sensors.filter(|(_, sensor)| sensor.kind == SensorKind::Distance);
+                used.extend(distances.map(|(index, _)| index));
             }
         }
     }

@@ -169,7 +169,7 @@ fn last_number(action: &ResolvedAction) -> usize {
         ResolvedActionKind::If { branches, .. } => branches.last().map_or(0, |branch| branch.number),
         _ => 0,
     };
-    let inside = action.blocks().into_iter().filter_map(|block| block.last()).map(last_number);
+    let inside = action.kind.blocks().filter_map(|block| block.last()).map(last_number);
     inside.fold(action.number.max(branches), usize::max)
 }
 

@@ -53,7 +53,7 @@ fn find<'a>(
         ResolvedActionKind::RepeatUntil { .. } => within.rounds().condition(),
         _ => within.condition(),
     };
-    action.blocks().into_iter().find_map(|block| find(driver, block, number, start, within))
+    action.kind.blocks().find_map(|block| find(driver, block, number, start, within))
 }
 
 /// Returns the action that makes the end of an action unknown: in rounds, the first such action.
@@ -163,12 +163,7 @@ pub(crate) fn open_end_reason(kind: &ResolvedActionKind, text: &str) -> String {
         ResolvedActionKind::Slam => "the path of `slam` depends on what it explores".to_owned(),
         ResolvedActionKind::TurnUntil { .. } => format!("`{text}` ends when the way is clear"),
         ResolvedActionKind::If { .. } => format!("what `{text}` does depends on its sensors"),
-        ResolvedActionKind::Repeat { .. } | ResolvedActionKind::Do { .. } => {
-            format!("what `{text}` does depends on what sensors detect")
-        }
-        ResolvedActionKind::Move { .. }
-        | ResolvedActionKind::Turn { .. }
-        | ResolvedActionKind::Wait { .. }
-        | ResolvedActionKind::RepeatUntil { .. } => format!("`{text}` ends when its condition holds"),
+        _ if kind.conditions().next().is_some() => format!("`{text}` ends when its condition holds"),
+        _ => format!("what `{text}` does depends on what sensors detect"),
     }
 }
