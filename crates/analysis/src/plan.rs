@@ -3,7 +3,7 @@
 use pydslrep_kinematics as kinematics;
 use pydslrep_scene as scenery;
 
-use kinematics::StepKind;
+use kinematics::{MotionPrimitive, StepKind};
 
 use crate::environment::{
     COUNTS, Circle, Condition, Environment, Movement, ResolvedAction, ResolvedActionKind, Robot,
@@ -106,23 +106,19 @@ fn way_of_all(actions: &[ResolvedAction], done: &[f64]) -> f64 {
 
 fn way_of(action: &ResolvedAction, done: &[f64]) -> f64 {
     match &action.kind {
-        ResolvedActionKind::Move { distance, .. } => distance.map_or(OPEN_ENDED_EXTENT, f64::abs),
-        ResolvedActionKind::Turn { degrees, circle: Some(circle), .. } => {
-            degrees.unwrap_or(360.0).abs().to_radians() * circle.radius
-        }
-        ResolvedActionKind::Slam => SLAM_EXTENT,
         ResolvedActionKind::Repeat { count, body } => f64::from(*count) * way_of_all(body, done),
         ResolvedActionKind::RepeatUntil { body, .. } => {
             OPEN_ENDED_EXTENT.min(way_of_all(body, done) * *COUNTS.end())
         }
-        ResolvedActionKind::If { branches, otherwise } => {
-            let branches = branches.iter().map(|branch| branch.body.as_slice());
-            branches.chain([otherwise.as_slice()]).map(|body| way_of_all(body, done)).fold(0.0, f64::max)
+        ResolvedActionKind::If { .. } => {
+            action.kind.blocks().map(|body| way_of_all(body, done)).fold(0.0, f64::max)
         }
         ResolvedActionKind::Do { movement } => done.get(*movement).copied().unwrap_or_default(),
-        ResolvedActionKind::Turn { circle: None, .. }
-        | ResolvedActionKind::TurnUntil { .. }
-        | ResolvedActionKind::Wait { .. } => 0.0,
+        kind => match step_kind(kind) {
+            StepKind::Action(drive) | StepKind::Until { limit: drive } => drive.reach(),
+            // They are those above.
+            StepKind::Repeat { .. } | StepKind::Branch { .. } | StepKind::Call { .. } => 0.0,
+        },
     }
 }
 
@@ -219,44 +215,48 @@ fn steps(actions: &[ResolvedAction]) -> Vec<kinematics::Step> {
     actions.iter().map(step).collect()
 }
 
-fn step_kind(kind: &ResolvedActionKind) -> StepKind {
+/// What an action is to kinematics: whatever else is asked of its drive, such as how long it takes and how far it may get,
+/// follows from that.
+pub(crate) fn step_kind(kind: &ResolvedActionKind) -> StepKind {
     match kind {
         ResolvedActionKind::Move { distance, speed, until } => {
-            let drive =
-                distance.map(|distance| kinematics::MotionPrimitive::Move { distance, speed: *speed });
-            ended(drive, until.as_ref())
+            let drive = |distance| MotionPrimitive::Move { distance, speed: *speed };
+            ended(distance.map(drive), until.as_ref(), OPEN_ENDED_EXTENT)
         }
         ResolvedActionKind::Turn { left, degrees, circle, speed, until } => {
             let angle = degrees.map(|degrees| if *left { degrees } else { -degrees }.to_radians());
             let turn = |angle| match *circle {
                 Some(Circle { radius, reverse }) => {
-                    kinematics::MotionPrimitive::Arc { angle, radius, speed: *speed, reverse }
+                    MotionPrimitive::Arc { angle, radius, speed: *speed, reverse }
                 }
-                None => kinematics::MotionPrimitive::Turn { angle, speed: *speed },
+                None => MotionPrimitive::Turn { angle, speed: *speed },
             };
-            ended(angle.map(turn), until.as_ref())
+            ended(angle.map(turn), until.as_ref(), turn(std::f64::consts::TAU).reach())
         }
+        ResolvedActionKind::TurnUntil { .. } => StepKind::Action(MotionPrimitive::Unknown { reach: 0.0 }),
         ResolvedActionKind::Wait { seconds, until } => {
-            ended(seconds.map(|seconds| kinematics::MotionPrimitive::Wait { seconds }), until.as_ref())
+            let wait = |seconds| MotionPrimitive::Wait { seconds };
+            ended(seconds.map(wait), until.as_ref(), 0.0)
         }
         ResolvedActionKind::Repeat { count, body } => StepKind::Repeat { count: *count, body: steps(body) },
+        ResolvedActionKind::RepeatUntil { .. } => {
+            StepKind::Action(MotionPrimitive::Unknown { reach: OPEN_ENDED_EXTENT })
+        }
         ResolvedActionKind::If { branches, otherwise } => {
             let branches = branches.iter().map(|branch| steps(&branch.body));
             StepKind::Branch { ways: branches.chain([steps(otherwise)]).collect() }
         }
         ResolvedActionKind::Do { movement } => StepKind::Call { movement: *movement },
-        ResolvedActionKind::TurnUntil { .. }
-        | ResolvedActionKind::RepeatUntil { .. }
-        | ResolvedActionKind::Slam => StepKind::Action(kinematics::MotionPrimitive::Unknown),
+        ResolvedActionKind::Slam => StepKind::Action(MotionPrimitive::Unknown { reach: SLAM_EXTENT }),
     }
 }
 
-/// An action that a condition may end; without a bound nobody knows how far it leads.
-fn ended(action: Option<kinematics::MotionPrimitive>, until: Option<&Condition>) -> StepKind {
+/// An action that a condition may end. Without a bound nobody knows how far it leads: at most so many metres.
+fn ended(action: Option<MotionPrimitive>, until: Option<&Condition>, reach: f64) -> StepKind {
     match (action, until) {
         (Some(action), None) => StepKind::Action(action),
         (Some(limit), Some(_)) => StepKind::Until { limit },
-        (None, _) => StepKind::Action(kinematics::MotionPrimitive::Unknown),
+        (None, _) => StepKind::Action(MotionPrimitive::Unknown { reach }),
     }
 }
 

@@ -414,9 +414,7 @@ impl Statements<'_, '_> {
                 let done = parts.resolve(id, EntityKind::Movement, call.movement.as_ref()?)?;
                 self.places.get(&done).map(|&movement| ResolvedActionKind::Do { movement })
             }
-            Statement::Move(_) | Statement::Turn(_) | Statement::Wait(_) | Statement::Slam => {
-                simple_kind(statement, self.sensors)
-            }
+            _ => simple_kind(statement, self.sensors),
         }
     }
 
@@ -452,8 +450,8 @@ fn count(number: &ast::Number) -> Option<u32> {
     Some(value as u32)
 }
 
-/// Returns the kind of a statement that has no blocks and does no movement.
-fn simple_kind(statement: &Statement, sensors: &[Sensor]) -> Option<ResolvedActionKind> {
+/// Returns the kind of a statement that has no blocks and does no movement, of a robot with some sensors.
+pub(crate) fn simple_kind(statement: &Statement, sensors: &[Sensor]) -> Option<ResolvedActionKind> {
     Some(match statement {
         Statement::Move(step) => ResolvedActionKind::Move {
             distance: match &step.distance {

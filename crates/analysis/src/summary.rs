@@ -2,12 +2,13 @@
 
 use std::sync::LazyLock;
 
-use pydslrep_kinematics::{Drive, Model, SpeedProfile, Twist, motion};
+use pydslrep_kinematics::{Drive, Model, StepKind};
 use pydslrep_syntax::ast::{self, Action, ActionKind, Entity, Repeat, Rounds};
 use smol_str::SmolStr;
 
-use crate::defaults::{DEFAULT_ANGLE, speed};
-use crate::plan::default_model;
+use crate::environment::ResolvedActionKind;
+use crate::plan::{default_model, step_kind};
+use crate::resolve::simple_kind;
 
 /// Robots of default size, in the order of [`Drive::ALL`]. Each action asks them, with each key.
 static MODELS: LazyLock<[Option<Model>; Drive::ALL.len()]> = LazyLock::new(|| Drive::ALL.map(default_model));
@@ -67,15 +68,6 @@ impl Time {
             return None;
         }
         match &action.kind {
-            ActionKind::Move(step) => {
-                let length = step.distance.as_ref()?.value? * step.unit?.0.in_metres();
-                Self::driven(length, step.speed.as_ref(), |_| 1.0)
-            }
-            ActionKind::Turn(turn) => Self::of_turn(turn),
-            ActionKind::Wait(wait) => {
-                let seconds = [wait.seconds.as_ref()?.value?; Drive::ALL.len()];
-                Some(Self { seconds, calls: Vec::new() })
-            }
             ActionKind::Repeat(Repeat { rounds: Some(Rounds::Times(count)), block: Some(block) }) => {
                 let mut time = Self::default();
                 time.add(&Self::of(&block.actions), count.value?.max(0.0));
@@ -86,7 +78,8 @@ impl Time {
                 Some(Self { seconds: Default::default(), calls: vec![(name, 1.0)] })
             }
             ActionKind::If(branches) => Some(Self::of_ways(branches)),
-            ActionKind::Repeat(_) | ActionKind::Slam => None,
+            ActionKind::Repeat(_) => None,
+            simple => Self::driven(&simple_kind(simple, &[])?),
         }
     }
 
@@ -101,31 +94,13 @@ impl Time {
         Self { seconds: least.unwrap_or_default(), calls: Vec::new() }
     }
 
-    fn of_turn(turn: &ast::Turn) -> Option<Self> {
-        let degrees = match &turn.angle {
-            Some(angle) => angle.value?,
-            None => DEFAULT_ANGLE,
-        };
-        let radius = match &turn.circle {
-            Some(circle) => circle.radius.as_ref()?.value? * circle.unit?.0.in_metres(),
-            None => 0.0,
-        };
-        let twist = Twist { vx: radius, omega: 1.0, ..Twist::default() };
-        Self::driven(degrees.to_radians(), turn.speed.as_ref(), |model| model.fastest_rim(twist))
-    }
-
-    /// A drive whose rims travel so far for each unit of `amount`.
-    fn driven(
-        amount: f64,
-        clause: Option<&ast::SpeedClause>,
-        rim_per_unit: impl Fn(&Model) -> f64,
-    ) -> Option<Self> {
-        let speed = speed(clause).filter(|speed| *speed > 0.0)?;
-        let seconds = MODELS.each_ref().map(|model| {
-            let rim = model.as_ref().map_or(0.0, &rim_per_unit);
-            let rest = if amount == 0.0 { 0.0 } else { motion::REST };
-            SpeedProfile::new(amount.abs() * rim, speed, motion::RIM_ACCELERATION).duration() + rest
-        });
+    /// That of an action without blocks.
+    fn driven(action: &ResolvedActionKind) -> Option<Self> {
+        let StepKind::Action(drive) = step_kind(action) else { return None };
+        let mut seconds = [0.0; Drive::ALL.len()];
+        for (seconds, model) in seconds.iter_mut().zip(MODELS.iter()) {
+            *seconds = drive.duration(model.as_ref()?)?;
+        }
         Some(Self { seconds, calls: Vec::new() })
     }
 

@@ -36,7 +36,56 @@ pub enum MotionPrimitive {
         seconds: f64,
     },
     /// Something whose end only the world decides (`turn … until`, `slam`).
-    Unknown,
+    Unknown {
+        /// The longest way that it may drive, metres.
+        reach: f64,
+    },
+}
+
+impl MotionPrimitive {
+    /// Returns the longest way that the robot's middle drives in it, metres.
+    pub fn reach(self) -> f64 {
+        match self {
+            Self::Move { distance, .. } => distance.abs(),
+            Self::Arc { angle, radius, .. } => angle.abs() * radius,
+            Self::Turn { .. } | Self::Wait { .. } => 0.0,
+            Self::Unknown { reach } => reach,
+        }
+    }
+
+    /// Seconds that a robot takes for it; `None` if only the world decides, or if its speed is not above zero.
+    pub fn duration(self, model: &Model) -> Option<f64> {
+        if let Self::Wait { seconds } = self {
+            return Some(seconds.max(0.0));
+        }
+        let (unit, amount, speed) = self.drive(model).filter(|(.., speed)| *speed > 0.0)?;
+        Some(duration(&profile(amount * model.fastest_rim(unit), speed), amount))
+    }
+
+    /// The body's motion per unit of an amount, that amount in metres or radians, and the rim speed of the fastest wheel;
+    /// `None` if it stands still, or only the world decides.
+    fn drive(self, model: &Model) -> Option<(Twist, f64, f64)> {
+        Some(match self {
+            Self::Move { distance, speed } => {
+                (Twist { vx: distance.signum(), ..Twist::default() }, distance, speed)
+            }
+            Self::Turn { angle, speed } => (model.turning().twist(angle), angle, speed),
+            Self::Arc { angle, radius, speed, reverse } => {
+                let radius = if reverse { -radius } else { radius };
+                (Turning::OnCircle { radius }.twist(angle), angle, speed)
+            }
+            Self::Wait { .. } | Self::Unknown { .. } => return None,
+        })
+    }
+}
+
+fn profile(rim_travel: f64, speed: f64) -> SpeedProfile {
+    SpeedProfile::new(rim_travel, speed, motion::RIM_ACCELERATION)
+}
+
+/// Seconds, with the rest after a drive.
+fn duration(profile: &SpeedProfile, amount: f64) -> f64 {
+    profile.duration() + if amount == 0.0 { 0.0 } else { motion::REST }
 }
 
 /// The kind of a leg of a plan.
@@ -71,29 +120,20 @@ pub(crate) struct Course {
 impl Course {
     /// `None` if only the world decides when the action ends.
     pub(crate) fn new(model: &Model, action: MotionPrimitive) -> Option<Self> {
-        let (unit, amount, speed) = match action {
-            MotionPrimitive::Move { distance, speed } => {
-                (Twist { vx: distance.signum(), ..Twist::default() }, distance, speed)
-            }
-            MotionPrimitive::Turn { angle, speed } => (model.turning().twist(angle), angle, speed),
-            MotionPrimitive::Arc { angle, radius, speed, reverse } => {
-                let radius = if reverse { -radius } else { radius };
-                (Turning::OnCircle { radius }.twist(angle), angle, speed)
-            }
-            MotionPrimitive::Wait { seconds } => return Some(Self::wait(model, seconds)),
-            MotionPrimitive::Unknown => return None,
-        };
+        if let MotionPrimitive::Wait { seconds } = action {
+            return Some(Self::wait(model, seconds));
+        }
+        let (unit, amount, speed) = action.drive(model)?;
         let rim_per_unit = model.fastest_rim(unit);
-        let profile = SpeedProfile::new(amount.abs() * rim_per_unit, speed, motion::RIM_ACCELERATION);
+        let profile = profile(amount * rim_per_unit, speed);
         let twist = Twist { vx: unit.vx / rim_per_unit, vy: 0.0, omega: unit.omega / rim_per_unit };
         let peak = Twist { vx: twist.vx * profile.peak(), vy: 0.0, omega: twist.omega * profile.peak() };
-        let rest = if amount == 0.0 { 0.0 } else { motion::REST };
         Some(Self {
             kind: LegKind::Drive,
             unit,
             amount: amount.abs(),
             change: None,
-            duration: profile.duration() + rest,
+            duration: duration(&profile, amount),
             rates: model.inverse(peak).rates,
             profile,
             twist,

@@ -273,7 +273,10 @@ mod tests {
     #[test]
     fn unknown_spoils_own_poses_and_everybodys_later_times() {
         let robots = [robot(Pose::default()), robot(Pose::default())];
-        let lost = Run { robot: 0, actions: vec![forward(1.0), MotionPrimitive::Unknown, forward(1.0)] };
+        let lost = Run {
+            robot: 0,
+            actions: vec![forward(1.0), MotionPrimitive::Unknown { reach: 0.0 }, forward(1.0)],
+        };
         let fine = Run { robot: 1, actions: vec![forward(1.0), forward(1.0)] };
         let again = Run { robot: 0, actions: vec![forward(1.0)] };
         let plan = plan(&robots, &[vec![lost, fine.clone()], vec![again, fine]]).unwrap();
@@ -289,7 +292,7 @@ mod tests {
     fn an_unknown_first_group_is_never_forgotten() {
         let robots = [robot(Pose::default())];
         let run = |action| vec![Run { robot: 0, actions: vec![action] }];
-        let plan = plan(&robots, &[run(MotionPrimitive::Unknown), run(forward(1.0))]).unwrap();
+        let plan = plan(&robots, &[run(MotionPrimitive::Unknown { reach: 0.0 }), run(forward(1.0))]).unwrap();
         assert_eq!((plan.duration, plan.robots[0].legs.len()), (None, 0));
     }
 

@@ -55,7 +55,7 @@ pub(crate) fn wait(seconds: f64) -> Step {
 }
 
 pub(crate) fn slam() -> Step {
-    step(StepKind::Action(MotionPrimitive::Unknown))
+    step(StepKind::Action(MotionPrimitive::Unknown { reach: 0.0 }))
 }
 
 pub(crate) fn until(distance: f64) -> Step {

@@ -592,7 +592,7 @@ mod tests {
             let side = numbered(side.into_iter().filter(|step| !calls_any(step)).collect());
             let (main, called) = (numbered(main), [side]);
             let mut written = Vec::new();
-            write_out(&main, &called, &(0, vec![], vec![], MotionPrimitive::Unknown), &mut written);
+            write_out(&main, &called, &(0, vec![], vec![], MotionPrimitive::Unknown { reach: 0.0 }), &mut written);
             prop_assume!(written.len() < 20_000);
             let actions: Vec<MotionPrimitive> = written.iter().map(|(.., action)| *action).collect();
             let flat = plan_movement(&model, Pose::default(), &actions);

@@ -365,19 +365,22 @@ mod tests {
     fn robots_do_not_collide_after_an_action_of_unknown_duration() {
         // Where each robot is once the unknown action begins is not known, nor when others start after it.
         for schedule in [
-            [&[(0, &[MotionPrimitive::Unknown, AHEAD][..]), (1, &[AHEAD])][..], &[]],
-            [&[(0, &[AHEAD]), (1, &[MotionPrimitive::Unknown, AHEAD])], &[]],
-            [&[(0, &[MotionPrimitive::Unknown])], &[(0, &[AHEAD]), (1, &[AHEAD])]],
-            [&[(0, &[MotionPrimitive::Unknown])], &[(1, &[AHEAD])]],
+            [&[(0, &[MotionPrimitive::Unknown { reach: 0.0 }, AHEAD][..]), (1, &[AHEAD])][..], &[]],
+            [&[(0, &[AHEAD]), (1, &[MotionPrimitive::Unknown { reach: 0.0 }, AHEAD])], &[]],
+            [&[(0, &[MotionPrimitive::Unknown { reach: 0.0 }])], &[(0, &[AHEAD]), (1, &[AHEAD])]],
+            [&[(0, &[MotionPrimitive::Unknown { reach: 0.0 }])], &[(1, &[AHEAD])]],
         ] {
             assert_eq!(found(&crossing(), &schedule), [], "{schedule:?}");
         }
         // A third robot's unknown action leaves the two where they are, but not when.
         let mut scene = crossing();
         scene.robots.push(Robot { start: Pose::new(5.0, 5.0, 0.0), ..scene.robots[0].clone() });
-        let before: &[(usize, &[MotionPrimitive])] = &[(2, &[MotionPrimitive::Unknown])];
+        let before: &[(usize, &[MotionPrimitive])] = &[(2, &[MotionPrimitive::Unknown { reach: 0.0 }])];
         assert_eq!(found(&scene, &[before, &[(0, &[AHEAD]), (1, &[AHEAD])]]), []);
-        let collisions = found(&scene, &[&[(0, &[AHEAD]), (1, &[AHEAD]), (2, &[MotionPrimitive::Unknown])]]);
+        let collisions = found(
+            &scene,
+            &[&[(0, &[AHEAD]), (1, &[AHEAD]), (2, &[MotionPrimitive::Unknown { reach: 0.0 }])]],
+        );
         assert!(
             collisions.len() == 1 && collisions[0].time.is_some(),
             "it delays nobody in its own group: {collisions:?}"
@@ -386,7 +389,8 @@ mod tests {
 
     #[test]
     fn robots_collide_before_an_action_of_unknown_duration() {
-        let collisions = found(&crossing(), &[&[(0, &[AHEAD, MotionPrimitive::Unknown]), (1, &[AHEAD])]]);
+        let collisions =
+            found(&crossing(), &[&[(0, &[AHEAD, MotionPrimitive::Unknown { reach: 0.0 }]), (1, &[AHEAD])]]);
         let [collision] = collisions.as_slice() else { panic!("{collisions:?}") };
         assert!(collision.robot == 0 && collision.with == SceneObject::Robot(1), "{collision:?}");
         assert!(collision.time.is_some_and(|time| (time - 7.1).abs() < 0.05), "{collision:?}");
@@ -394,7 +398,10 @@ mod tests {
         let to_the_middle = MotionPrimitive::Move { distance: 1.0, speed: 0.1 };
         let later = MotionPrimitive::Move { distance: 2.0, speed: 0.01 };
         assert_eq!(
-            found(&crossing(), &[&[(0, &[to_the_middle, MotionPrimitive::Unknown]), (1, &[later])]]),
+            found(
+                &crossing(),
+                &[&[(0, &[to_the_middle, MotionPrimitive::Unknown { reach: 0.0 }]), (1, &[later])]]
+            ),
             []
         );
         assert_eq!(found(&crossing(), &[&[(0, &[to_the_middle]), (1, &[later])]]).len(), 1);
@@ -404,7 +411,8 @@ mod tests {
     fn an_obstacle_on_a_known_path_is_hit_at_an_unknown_time() {
         let wall = Obstacle::wall("w", (1.0, -1.0), (1.0, 1.0), 0.1);
         let scene = scene(&[Pose::default(), Pose::new(-5.0, -1.0, FRAC_PI_2)], vec![wall]);
-        let collisions = found(&scene, &[&[(1, &[MotionPrimitive::Unknown])], &[(0, &[AHEAD])]]);
+        let collisions =
+            found(&scene, &[&[(1, &[MotionPrimitive::Unknown { reach: 0.0 }])], &[(0, &[AHEAD])]]);
         assert!(
             collisions.len() == 1
                 && collisions[0].time.is_none()
@@ -412,7 +420,11 @@ mod tests {
             "{collisions:?}"
         );
         assert!((collisions[0].pose.x - 0.8).abs() < 0.001, "{collisions:?}");
-        assert_eq!(found(&scene, &[&[(0, &[MotionPrimitive::Unknown, AHEAD])]]), [], "nor is its path");
+        assert_eq!(
+            found(&scene, &[&[(0, &[MotionPrimitive::Unknown { reach: 0.0 }, AHEAD])]]),
+            [],
+            "nor is its path"
+        );
     }
 
     /// A post of 10 cm that moves.
@@ -473,7 +485,10 @@ mod tests {
             &[Pose::default(), Pose::new(-5.0, -1.0, FRAC_PI_2)],
             vec![post(&[[0.0, 1.0, 0.0], [9e5, 1.0, 0.0]], true)],
         );
-        assert_eq!(found(&scene, &[&[(1, &[MotionPrimitive::Unknown])], &[(0, &[AHEAD])]]), []);
+        assert_eq!(
+            found(&scene, &[&[(1, &[MotionPrimitive::Unknown { reach: 0.0 }])], &[(0, &[AHEAD])]]),
+            []
+        );
         assert_eq!(found(&scene, &[&[(0, &[AHEAD])]]).len(), 1);
     }
 
