@@ -153,6 +153,13 @@ impl Quantity {
         }
     }
 
+    /// Returns its name in messages, without article and unit.
+    pub fn noun(self) -> &'static str {
+        let phrase = self.phrase();
+        let noun = phrase.split_once(' ').map_or(phrase, |(_, noun)| noun);
+        noun.split_once(" in ").map_or(noun, |(noun, _)| noun)
+    }
+
     /// Its placeholder in the form of a statement.
     pub fn placeholder(self) -> &'static str {
         match self {

@@ -23,7 +23,7 @@ pub(super) fn problem(
         .or_else(|| time_unit(&place, expected, found))
         .or_else(|| glued_to_number(&place, expected))
         .or_else(|| number_for_name(&place, expected, found))
-        .or_else(|| needless_word(&place, found))
+        .or_else(|| needless_word(&place, expected, found))
         .or_else(|| combined(&place, found))
         .or_else(|| way_of_moving(&place, expected, found))
         .or_else(|| angle_first(&place, found))
@@ -364,12 +364,21 @@ fn number_for_name(place: &TokenContext<'_, '_>, expected: &[Expected], found: &
 }
 
 /// `turn left by 90`, `wait for 2 seconds`
-fn needless_word(place: &TokenContext<'_, '_>, found: &str) -> Option<Problem> {
-    let why = match place.before(1)?.0 {
-        TokenKind::Left | TokenKind::Right => "the angle comes right after the direction",
-        TokenKind::Move => "the distance comes right after `move`",
-        TokenKind::Wait => "the time comes right after `wait`",
-        TokenKind::Repeat => "the number of rounds comes right after `repeat`",
+fn needless_word(place: &TokenContext<'_, '_>, expected: &[Expected], found: &str) -> Option<Problem> {
+    let (before, span) = place.before(1)?;
+    let why = match before {
+        TokenKind::Left | TokenKind::Right => "the angle comes right after the direction".to_owned(),
+        _ if before.is_action() => {
+            let quantity = expected.iter().find_map(|expected| match expected {
+                Expected::Number(quantity) => Some(*quantity),
+                _ => None,
+            });
+            let what = match quantity? {
+                Quantity::Count if before.begins_block() => "number of rounds",
+                quantity => quantity.noun(),
+            };
+            format!("the {what} comes right after `{}`", place.context.text(span))
+        }
         _ => return None,
     };
     if !["by", "for"].contains(&found) || !place.after()?.0.is_number() {

@@ -173,8 +173,10 @@ fn missing(
     let what = clause.map_or_else(|| listed(&expected), |(what, _)| what.to_owned());
     let mut problem = RULE.problem(span, format!("missing {what}{place}"));
     let braces = before.and_then(|(token, _)| words::missing_braces(*token, &expected));
-    if let Some(shape) = braces.map(str::to_owned).or_else(|| shape(context, inside, &expected)) {
-        problem = problem.help(shape);
+    let amount = || words::amount(context, span, &expected);
+    let help = braces.map(str::to_owned).or_else(amount).or_else(|| shape(context, inside, &expected));
+    if let Some(help) = help {
+        problem = problem.help(help);
     }
     if *found == Found::End && expected.contains(&Expected::Word(TokenKind::CloseBrace)) {
         problem = problem.brace(Brace::Unclosed);
@@ -259,8 +261,9 @@ fn unexpected(
         }
         Some(_) => {
             let problem = RULE.problem(span, format!("expected {}, found `{found}`", listed(&expected)));
-            match shape(context, inside, &expected) {
-                Some(shape) => problem.help(shape),
+            let amount = words::amount(context, span, &expected);
+            match amount.or_else(|| shape(context, inside, &expected)) {
+                Some(help) => problem.help(help),
                 None => problem,
             }
         }

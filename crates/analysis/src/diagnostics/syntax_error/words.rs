@@ -1,7 +1,7 @@
 //! Sentences and phrases for messages: what is expected at a place, and how a statement is written.
 
 use pydslrep_syntax::ast::Entity;
-use pydslrep_syntax::{EntityKind, Expected, Quantity, TokenKind};
+use pydslrep_syntax::{EntityKind, Expected, Quantity, Span, TokenKind};
 
 use crate::diagnostics::context::Context;
 
@@ -38,6 +38,24 @@ pub(super) fn missing_braces(before: TokenKind, expected: &[Expected]) -> Option
     }
 }
 
+/// Returns a sentence that shows the syntax of the action whose number, or whose word after that, is expected at a place:
+/// several actions may have the same word there.
+pub(super) fn amount(context: &Context<'_>, at: Span, expected: &[Expected]) -> Option<String> {
+    let before =
+        context.tokens.iter().rev().filter(|(token, span)| !token.is_comment() && span.end <= at.start);
+    let mut before = before.skip_while(|(token, _)| token.is_number());
+    let (token, span) = before.next()?;
+    let is_keyword =
+        |action: &TokenKind| action == token || token.is_name() && action.is_similar_to(context.text(*span));
+    let is_amount = |expected: &Expected| match expected {
+        Expected::Number(_) => true,
+        Expected::Word(word) => word.is_name(),
+        _ => false,
+    };
+    let keyword = TokenKind::ACTIONS.into_iter().find(is_keyword)?;
+    expected.iter().any(is_amount).then(|| action(keyword))
+}
+
 /// Returns a sentence that shows the syntax of the statement or declaration in which the text is expected.
 pub(super) fn shape(
     context: &Context<'_>,
@@ -60,12 +78,6 @@ pub(super) fn shape(
     let turns = [number(Quantity::Angle), Expected::ReferenceTo(EntityKind::Sensor)];
     if expected == [word(TokenKind::Until)] {
         return Some(action(TokenKind::Move));
-    }
-    if expects_any(&[number(Quantity::Time), word(TokenKind::Seconds)]) {
-        return Some(action(TokenKind::Wait));
-    }
-    if expects_any(&[number(Quantity::Count), word(TokenKind::Times)]) {
-        return Some(action(TokenKind::Repeat));
     }
     if expects_any(&[word(TokenKind::Clear), word(TokenKind::Detect)]) {
         return Some(CONDITION.to_owned());
