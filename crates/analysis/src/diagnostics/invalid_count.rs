@@ -1,6 +1,6 @@
 //! `invalid-count`: a block is repeated once, or no whole number of times from 1 to 10000.
 
-use pydslrep_syntax::ast::{Action, ActionKind, Block, Number, Repeat, Rounds};
+use pydslrep_syntax::ast::{Action, Block, Number};
 use pydslrep_syntax::{Span, Token};
 
 use super::context::Context;
@@ -32,33 +32,36 @@ const PAGE: Page = Page {
 
 fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     for action in context.actions() {
-        let ActionKind::Repeat(Repeat { rounds: Some(Rounds::Times(count)), block }) = &action.kind else {
-            continue;
-        };
+        let Some(count) = action.count() else { continue };
+        let block = action.blocks().next();
         match count.value.filter(|value| value.is_finite()) {
-            Some(1.0) => problems.push(once(context, action, count, block.as_ref())),
+            Some(1.0) => problems.extend(block.map(|block| once(context, action, count, block))),
             Some(value) if value.fract() != 0.0 || !COUNTS.contains(&value) => {
-                problems.push(none(context, count));
+                problems.push(none(context, action, count));
             }
             _ => {}
         }
     }
 }
 
-fn none(context: &Context<'_>, count: &Number) -> Problem {
+fn none(context: &Context<'_>, action: &Action, count: &Number) -> Problem {
     let written = context.short_text(count.span);
     let (min, max) = (COUNTS.start(), COUNTS.end());
-    RULE.problem(
-        count.span,
-        format!("a block is repeated from {min} to {max} times, a whole number, not {written}"),
-    )
-    .severity(Severity::Error)
-    .help("write how often; for more rounds, put one `repeat` into another")
+    let keyword = action.keyword();
+    let (what, more) = if keyword.begins_block() {
+        ("a block is repeated".to_owned(), "; for more rounds, put one `repeat` into another")
+    } else {
+        (format!("a {} is done", keyword.spelling().unwrap_or_default()), "")
+    };
+    RULE.problem(count.span, format!("{what} from {min} to {max} times, a whole number, not {written}"))
+        .severity(Severity::Error)
+        .help(format!("write how often{more}"))
 }
 
-fn once(context: &Context<'_>, action: &Action, count: &Number, block: Option<&Block>) -> Problem {
+fn once(context: &Context<'_>, action: &Action, count: &Number, block: &Block) -> Problem {
     let problem = RULE.problem(count.span, "a block that is repeated once is done without `repeat` as well");
-    match block.filter(|block| !block.actions.is_empty()).and_then(|block| unrolled(context, action, block)) {
+    let edits = if block.actions.is_empty() { None } else { unrolled(context, action, block) };
+    match edits {
         Some(edits) => problem.fix("remove `repeat`", edits),
         None => problem,
     }
