@@ -6,40 +6,57 @@ use std::fmt::Write as _;
 use pydslrep_analysis::DEFAULT_ANGLE;
 use pydslrep_kinematics::motion::RIM_SPEED;
 use pydslrep_syntax::ast::{
-    Action, ActionKind, Block, Condition, If, Move, Number, Repeat, Rounds, SpeedClause, Turn, Unit, Until,
-    Wait,
+    Action, ActionKind, Block, Condition, Move, Number, SpeedClause, Turn, Unit, Until,
 };
 
+use super::Selection;
+
 /// Returns the meaning of an action; `None` if part of it is missing.
-pub(super) fn meaning(action: &Action) -> Option<String> {
-    let mut words = Words::default();
+pub(super) fn meaning(selection: &Selection<'_>, action: &Action) -> Option<String> {
+    let mut words = Words { selection, text: String::new() };
     words.action(action)?;
     Some(words.text)
 }
 
-#[derive(Default)]
-struct Words {
+struct Words<'a> {
+    selection: &'a Selection<'a>,
     text: String,
 }
 
-impl Words {
+impl Words<'_> {
     fn action(&mut self, action: &Action) -> Option<()> {
         match &action.kind {
             ActionKind::Move(step) => self.step(step),
             ActionKind::Turn(turn) => self.turn(turn),
-            ActionKind::Wait(wait) => self.wait(wait),
-            ActionKind::Repeat(repeat) => self.repeat(repeat),
-            ActionKind::If(choice) => self.choice(choice),
-            ActionKind::Do(call) => {
-                self.word("do");
-                self.word(&call.movement.as_ref()?.text);
-                Some(())
-            }
-            ActionKind::Slam => {
-                self.word("slam");
-                Some(())
+            // The others mean what their words say.
+            _ => self.written(action),
+        }
+    }
+
+    /// The words of an action as the program has them; the meaning of its numbers, conditions and blocks.
+    fn written(&mut self, action: &Action) -> Option<()> {
+        let tokens = &self.selection.entity.parse.tokens;
+        let (mut numbers, mut conditions) = (action.numbers().peekable(), action.conditions().peekable());
+        let mut blocks = action.blocks().peekable();
+        let mut next = action.span.start;
+        while next < action.span.end {
+            let (token, span) = *tokens.get(tokens.partition_point(|(_, span)| span.start < next))?;
+            next = span.end;
+            if let Some(number) = numbers.next_if(|number| number.span == span) {
+                self.number(number.value?);
+            } else if let Some(condition) = conditions.next_if(|part| part.span.start == span.start) {
+                self.condition(condition)?;
+                next = condition.span.end;
+            } else if let Some(block) = blocks.next_if(|block| block.span.start == span.start) {
+                self.block(block)?;
+                next = block.span.end;
+            } else if let Some(word) = token.spelling() {
+                self.word(word);
+            } else if !token.is_comment() {
+                self.word(self.selection.text(span).trim_start_matches('^'));
             }
         }
+        Some(())
     }
 
     fn step(&mut self, step: &Move) -> Option<()> {
@@ -69,36 +86,6 @@ impl Words {
             self.word("reverse");
         }
         self.until(turn.until.as_ref())
-    }
-
-    fn wait(&mut self, wait: &Wait) -> Option<()> {
-        self.word("wait");
-        if let Some(seconds) = &wait.seconds {
-            self.number(seconds.value?);
-        }
-        self.until(wait.until.as_ref())
-    }
-
-    fn repeat(&mut self, repeat: &Repeat) -> Option<()> {
-        self.word("repeat");
-        match repeat.rounds.as_ref()? {
-            Rounds::Times(count) => self.number(count.value?),
-            Rounds::Until(until) => self.until(Some(until))?,
-        }
-        self.block(repeat.block.as_ref()?)
-    }
-
-    fn choice(&mut self, choice: &If) -> Option<()> {
-        for branch in &choice.branches {
-            self.word("if");
-            self.condition(branch.condition.as_ref()?)?;
-            self.block(branch.block.as_ref()?)?;
-        }
-        if let Some(block) = &choice.otherwise {
-            self.word("else");
-            self.block(block)?;
-        }
-        Some(())
     }
 
     fn block(&mut self, block: &Block) -> Option<()> {

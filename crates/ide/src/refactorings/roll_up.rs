@@ -54,6 +54,7 @@ fn longest_run(row: &Row<'_>) -> Option<Run> {
 
 /// The search for the longest run in a part of a row.
 struct Search<'a> {
+    selection: Selection<'a>,
     actions: &'a [Action],
     part: Range<usize>,
     /// The meaning of each action, computed on demand.
@@ -63,7 +64,7 @@ struct Search<'a> {
 impl<'a> Search<'a> {
     fn new(row: &Row<'a>, part: Range<usize>) -> Self {
         let meanings = (0..row.actions.len()).map(|_| OnceCell::new()).collect();
-        Self { actions: row.actions, part, meanings }
+        Self { selection: row.selection, actions: row.actions, part, meanings }
     }
 
     /// The longest run, of those with the smallest groups the first; with an action, only runs that include it.
@@ -107,7 +108,8 @@ impl<'a> Search<'a> {
     }
 
     fn meaning(&self, index: usize) -> Option<&str> {
-        self.meanings.get(index)?.get_or_init(|| self.actions.get(index).and_then(meaning)).as_deref()
+        let of_action = || meaning(&self.selection, self.actions.get(index)?);
+        self.meanings.get(index)?.get_or_init(of_action).as_deref()
     }
 }
 
