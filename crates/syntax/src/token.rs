@@ -4,11 +4,12 @@ use logos::Logos;
 use pydslrep_robots::Drive;
 use pydslrep_text::{closest, is_similar};
 
-/// Writes [`TokenKind`] with the keywords, and the lists of them: a keyword is one line.
+/// Writes [`TokenKind`] with the keywords, and the lists of them: a keyword is one line, and one that begins an action has
+/// its row of [`ACTIONS`] beside it.
 macro_rules! keywords {
     (
-        reserved { $($reserved:ident $reserved_word:tt,)* }
-        contextual { $($(#[$doc:meta])* $contextual:ident $contextual_word:tt,)* }
+        reserved { $($reserved:ident $reserved_word:tt $({ $($reserved_row:tt)* })?,)* }
+        contextual { $($(#[$doc:meta])* $contextual:ident $contextual_word:tt $({ $($row:tt)* })?,)* }
     ) => {
         /// A token without its text; the text is found by the span beside it.
         #[derive(Logos, Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -89,6 +90,12 @@ macro_rules! keywords {
             $((TokenKind::$contextual, $contextual_word),)*
         ];
 
+        /// The keywords that begin an action.
+        const ACTIONS: &[Action] = &[
+            $($(Action { keyword: TokenKind::$reserved, $($reserved_row)* },)?)*
+            $($(Action { keyword: TokenKind::$contextual, $($row)* },)?)*
+        ];
+
         /// The keywords that cannot be names unless escaped by `^`.
         const RESERVED: TokenSet = TokenSet::of(&[$(TokenKind::$reserved,)*]);
 
@@ -119,15 +126,27 @@ keywords! {
         Parallel "parallel",
         Movement "movement",
         Of "of",
-        Move "move",
+        Move "move" {
+            only_before: NOTHING,
+            examples: &["move 4.0 meters", "move 40 centimeters at 9.0"],
+            details: &[],
+        },
         Meters "meters",
         Centimeters "centimeters",
         At "at",
-        Turn "turn",
+        Turn "turn" {
+            only_before: NOTHING,
+            examples: &["turn left 90", "turn right until { SENSORS }"],
+            details: &[],
+        },
         Left "left",
         Right "right",
         Until "until",
-        Slam "slam",
+        Slam "slam" {
+            only_before: NOTHING,
+            examples: &["slam"],
+            details: &[],
+        },
         Environment "environment",
         Robots "robots",
         Moves "moves",
@@ -140,19 +159,35 @@ keywords! {
         /// A word only at the start of an import.
         Import "import",
         /// A word only where an action can begin.
-        Wait "wait",
+        Wait "wait" {
+            only_before: AMOUNT,
+            examples: &["wait 2 seconds", "wait until { SENSORS } clear"],
+            details: &["stands still", "stands still until no sensor detects an obstacle"],
+        },
         /// A word only after the number of a `wait`.
         Seconds "seconds",
         /// A word only where an action can begin.
-        Repeat "repeat",
+        Repeat "repeat" {
+            only_before: AMOUNT,
+            examples: &["repeat 4 times { ACTIONS }", "repeat until { SENSORS } detect { ACTIONS }"],
+            details: &["a number of times", "until a sensor detects an obstacle"],
+        },
         /// A word only after the number of a `repeat`.
         Times "times",
         /// A word only where an action can begin.
-        If "if",
+        If "if" {
+            only_before: TokenSet::of(&[TokenKind::OpenBrace]),
+            examples: &["if { SENSORS } detect { ACTIONS }"],
+            details: &["only if a sensor detects an obstacle"],
+        },
         /// A word only after the block of an `if`.
         Else "else",
         /// A word only where an action can begin.
-        Do "do",
+        Do "do" {
+            only_before: NOTHING,
+            examples: &["do MOVEMENT"],
+            details: &["another movement of the same robot"],
+        },
         /// A word only before `reverse`.
         In "in",
         /// A word only after `in`.
@@ -183,74 +218,22 @@ struct Action {
     examples: &'static [&'static str],
     /// See [`TokenKind::details`].
     details: &'static [&'static str],
-    /// See [`TokenKind::is_in_article`].
-    in_article: bool,
 }
 
 const AMOUNT: TokenSet = TokenKind::NUMBERS.or(TokenSet::of(&[TokenKind::Until]));
 
-/// A row for each action, in the order in which messages list them.
-const ACTIONS: &[Action] = &[
-    Action {
-        keyword: TokenKind::Move,
-        only_before: NOTHING,
-        examples: &["move 4.0 meters", "move 40 centimeters at 9.0"],
-        details: &[],
-        in_article: true,
-    },
-    Action {
-        keyword: TokenKind::Turn,
-        only_before: NOTHING,
-        examples: &["turn left 90", "turn right until { SENSORS }"],
-        details: &[],
-        in_article: true,
-    },
-    Action {
-        keyword: TokenKind::Wait,
-        only_before: AMOUNT,
-        examples: &["wait 2 seconds", "wait until { SENSORS } clear"],
-        details: &["stands still", "stands still until no sensor detects an obstacle"],
-        in_article: false,
-    },
-    Action {
-        keyword: TokenKind::Repeat,
-        only_before: AMOUNT,
-        examples: &["repeat 4 times { ACTIONS }", "repeat until { SENSORS } detect { ACTIONS }"],
-        details: &["a number of times", "until a sensor detects an obstacle"],
-        in_article: false,
-    },
-    Action {
-        keyword: TokenKind::If,
-        only_before: TokenSet::of(&[TokenKind::OpenBrace]),
-        examples: &["if { SENSORS } detect { ACTIONS }"],
-        details: &["only if a sensor detects an obstacle"],
-        in_article: false,
-    },
-    Action {
-        keyword: TokenKind::Do,
-        only_before: NOTHING,
-        examples: &["do MOVEMENT"],
-        details: &["another movement of the same robot"],
-        in_article: false,
-    },
-    Action {
-        keyword: TokenKind::Slam,
-        only_before: NOTHING,
-        examples: &["slam"],
-        details: &[],
-        in_article: true,
-    },
-];
-
 const NOTHING: TokenSet = TokenSet(0);
 
 impl TokenKind {
-    /// The keywords that begin an action.
+    /// The keywords that begin an action, in the order in which messages list them: `slam`, which few robots can, is last.
     pub const ACTIONS: [Self; ACTIONS.len()] = {
-        let mut words = [Self::Cursor; ACTIONS.len()];
-        let mut i = 0;
-        while i < words.len() {
-            words[i] = ACTIONS[i].keyword;
+        let mut words = [Self::Slam; ACTIONS.len()];
+        let (mut i, mut end) = (0, 0);
+        while i < ACTIONS.len() {
+            if !matches!(ACTIONS[i].keyword, Self::Slam) {
+                words[end] = ACTIONS[i].keyword;
+                end += 1;
+            }
             i += 1;
         }
         words
@@ -304,11 +287,6 @@ impl TokenKind {
     /// Returns whether it begins an action with a block.
     pub fn begins_block(self) -> bool {
         self.examples().iter().any(|example| example.contains("{ ACTIONS }"))
-    }
-
-    /// Returns whether it begins an action that the article has.
-    pub fn is_in_article(self) -> bool {
-        self.action().is_some_and(|action| action.in_article)
     }
 
     /// What follows the keyword of an action and never a name: before it, a keyword that can be a name is none. Nothing for

@@ -62,7 +62,8 @@ fn extensions(tokens: &[Token], action: &Action) -> Vec<Span> {
     match &action.kind {
         ActionKind::Move(step) => step.until.iter().map(|until| until.span).collect(),
         ActionKind::Turn(turn) => in_turn(turn),
-        _ if action.keyword().is_in_article() => Vec::new(),
+        // The words that came later stay usable as names.
+        _ if action.keyword().is_keyword() => Vec::new(),
         _ => {
             let keyword = tokens.iter().find(|(_, span)| span.start == action.span.start);
             vec![keyword.map_or(action.span, |(_, span)| *span)]
