@@ -52,8 +52,21 @@ pub(super) fn amount(context: &Context<'_>, at: Span, expected: &[Expected]) -> 
         Expected::Word(word) => word.is_name(),
         _ => false,
     };
-    let keyword = TokenKind::ACTIONS.into_iter().find(is_keyword)?;
-    expected.iter().any(is_amount).then(|| action(keyword))
+    let here = TokenKind::ACTIONS.into_iter().find(is_keyword).filter(|_| expected.iter().any(is_amount));
+    let any = || {
+        TokenKind::ACTIONS.into_iter().find(|action| expected.iter().any(|word| counts_in(*action, *word)))
+    };
+    here.or_else(any).map(action)
+}
+
+/// Returns whether what is expected is the word after the number of an action, as `seconds` is in `wait 2 seconds`.
+fn counts_in(action: TokenKind, expected: Expected) -> bool {
+    let Expected::Word(word) = expected else { return false };
+    let follows = |example: &&str| {
+        let mut words = example.split(' ').skip_while(|word| !word.starts_with(|c: char| c.is_ascii_digit()));
+        words.nth(1) == word.spelling()
+    };
+    word.is_name() && action.examples().iter().any(follows)
 }
 
 /// Returns a sentence that shows the syntax of the statement or declaration in which the text is expected.
