@@ -302,6 +302,7 @@ impl ActionKind {
 }
 
 impl Action {
+    #[inline(always)]
     fn parts(&self) -> Parts<'_> {
         self.kind.parts().1
     }
