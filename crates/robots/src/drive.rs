@@ -1,32 +1,8 @@
-//! The types by which robots are known elsewhere.
+//! What is asked of a type of robot, and which type wheels make.
 
-use crate::RobotType;
-use crate::robot_type::{FOUR_WHEEL, MECANUM, TWO_WHEEL};
-
-/// A type of robot: how its driven wheels are laid out. What that means is in its row, [`Drive::row`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Drive {
-    /// Two-wheel differential (`tw`).
-    TwoWheel,
-    /// Four standard wheels, skid-steer (`fw`).
-    FourWheel,
-    /// Four mecanum wheels whose rollers form an X seen from above (`fwh`).
-    Mecanum,
-}
+use crate::Drive;
 
 impl Drive {
-    /// All types, in the order in which they are listed for people, and in which wheels without a type are tried.
-    pub const ALL: [Self; 3] = [Self::TwoWheel, Self::FourWheel, Self::Mecanum];
-
-    /// Its row of the table.
-    pub const fn row(self) -> &'static RobotType {
-        match self {
-            Self::TwoWheel => &TWO_WHEEL,
-            Self::FourWheel => &FOUR_WHEEL,
-            Self::Mecanum => &MECANUM,
-        }
-    }
-
     /// As programs spell it.
     pub const fn word(self) -> &'static str {
         self.row().word
@@ -92,14 +68,15 @@ mod tests {
             assert_eq!(drive.row().drive, drive, "each has a row of its own");
         }
         assert_eq!(Drive::from_word("hexapod"), None);
-        assert_eq!(Drive::wheel_counts(), [2, 4]);
     }
 
     #[test]
     fn wheels_make_a_type() {
-        assert_eq!(Drive::from_wheels(&[false; 2]), Some(Drive::TwoWheel));
-        assert_eq!(Drive::from_wheels(&[false; 4]), Some(Drive::FourWheel));
-        assert_eq!(Drive::from_wheels(&[true; 4]), Some(Drive::Mecanum));
+        for drive in Drive::ALL {
+            assert_eq!(Drive::from_wheels(&vec![drive.row().mecanum; drive.wheel_count()]), Some(drive));
+            assert!(Drive::wheel_counts().contains(&drive.wheel_count()));
+        }
+        assert!(Drive::wheel_counts().is_sorted());
         assert_eq!(Drive::from_wheels(&[true; 2]), None);
         assert_eq!(Drive::from_wheels(&[true, false, false, false]), None);
         assert_eq!(Drive::from_wheels(&[]), None);

@@ -9,5 +9,4 @@
 mod drive;
 mod robot_type;
 
-pub use drive::Drive;
-pub use robot_type::{MAX_WHEELS, RobotType, WheelPlace};
+pub use robot_type::{Drive, MAX_WHEELS, RobotType, WheelPlace};

@@ -1,6 +1,29 @@
-//! The table: a row for each type of robot.
+//! The table: the types of robots, and a row for each.
 
-use crate::Drive;
+/// A type of robot: how its driven wheels are laid out. What that means is in its row, [`Drive::row`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Drive {
+    /// Two-wheel differential (`tw`).
+    TwoWheel,
+    /// Four standard wheels, skid-steer (`fw`).
+    FourWheel,
+    /// Four mecanum wheels whose rollers form an X seen from above (`fwh`).
+    Mecanum,
+}
+
+impl Drive {
+    /// All types, in the order in which they are listed for people, and in which wheels without a type are tried.
+    pub const ALL: [Self; 3] = [Self::TwoWheel, Self::FourWheel, Self::Mecanum];
+
+    /// Its row of the table.
+    pub const fn row(self) -> &'static RobotType {
+        match self {
+            Self::TwoWheel => &TWO_WHEEL,
+            Self::FourWheel => &FOUR_WHEEL,
+            Self::Mecanum => &MECANUM,
+        }
+    }
+}
 
 /// The row of a type of robot: its differences from the others.
 #[derive(Debug, PartialEq)]
@@ -65,7 +88,7 @@ const fn wheel(identifier: &'static str, ahead: f64, left: f64, push: f64) -> Wh
     WheelPlace { identifier, ahead, left, push }
 }
 
-pub(crate) const TWO_WHEEL: RobotType = RobotType {
+const TWO_WHEEL: RobotType = RobotType {
     drive: Drive::TwoWheel,
     word: "tw",
     noun: "a two-wheel robot",
@@ -81,7 +104,7 @@ pub(crate) const TWO_WHEEL: RobotType = RobotType {
     lateral_friction: 1.0,
 };
 
-pub(crate) const FOUR_WHEEL: RobotType = RobotType {
+const FOUR_WHEEL: RobotType = RobotType {
     drive: Drive::FourWheel,
     word: "fw",
     noun: "a four-wheel robot",
@@ -102,7 +125,7 @@ pub(crate) const FOUR_WHEEL: RobotType = RobotType {
     lateral_friction: 1.0,
 };
 
-pub(crate) const MECANUM: RobotType = RobotType {
+const MECANUM: RobotType = RobotType {
     drive: Drive::Mecanum,
     word: "fwh",
     noun: "a mecanum robot",
@@ -178,7 +201,7 @@ mod tests {
                 |of: fn(&WheelPlace) -> f64| -> f64 { drive.row().wheels.iter().map(of).sum::<f64>().abs() };
             assert!(sum(|wheel| wheel.left) + sum(|wheel| wheel.ahead) + sum(|wheel| wheel.push) == 0.0);
         }
-        assert_eq!(MAX_WHEELS, 4);
+        assert!(Drive::ALL.into_iter().all(|drive| drive.wheel_count() <= MAX_WHEELS));
     }
 
     #[test]
@@ -200,6 +223,7 @@ mod tests {
 
     #[test]
     fn only_standard_wheels_off_the_axle_scrub() {
-        assert_eq!(Drive::ALL.map(|drive| drive.row().scrubs()), [false, true, false]);
+        let scrubs = [Drive::TwoWheel, Drive::FourWheel, Drive::Mecanum].map(|drive| drive.row().scrubs());
+        assert_eq!(scrubs, [false, true, false]);
     }
 }
