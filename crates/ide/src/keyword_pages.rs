@@ -253,9 +253,8 @@ mod tests {
         assert!(ROBOT_SHAPE.contains(&format!("[{TYPE}]")), "{ROBOT_SHAPE}");
         for token in TokenKind::DRIVES {
             let row = token.drive().unwrap().row();
-            let count = ["two", "four"][usize::from(row.wheels.len() == 4)];
             let wheel = if row.mecanum { "wheelH" } else { "wheel" };
-            let meaning = format!("{}: {count} `{wheel}`, listed {}.", row.label, row.order());
+            let meaning = format!("{}: {} `{wheel}`, listed {}.", row.label, row.count, row.order());
             assert_eq!(keyword_page(token).unwrap().meaning, meaning);
             assert!(keyword_page(token).unwrap().example.contains(&format!("type {}", row.word)));
         }

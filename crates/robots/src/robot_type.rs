@@ -15,6 +15,9 @@ impl Drive {
     /// All types, in the order in which they are listed for people, and in which wheels without a type are tried.
     pub const ALL: [Self; 3] = [Self::TwoWheel, Self::FourWheel, Self::Mecanum];
 
+    /// The default sizes of their bodies in words, as Markdown.
+    pub const BODIES: &str = "`[0.30, 0.30]` with two wheels, `[0.36, 0.30]` with four";
+
     /// Its row of the table.
     pub const fn row(self) -> &'static RobotType {
         match self {
@@ -36,6 +39,8 @@ pub struct RobotType {
     pub noun: &'static str,
     /// The title of its description: `Two-wheel differential drive`.
     pub label: &'static str,
+    /// The number of its wheels in words: `two`.
+    pub count: &'static str,
     /// The places of its wheels, in the order in which programs list them and everything else has them.
     pub wheels: &'static [WheelPlace],
     /// True if it drives on mecanum wheels (`wheelH`); otherwise on standard ones (`wheel`).
@@ -93,6 +98,7 @@ const TWO_WHEEL: RobotType = RobotType {
     word: "tw",
     noun: "a two-wheel robot",
     label: "Two-wheel differential drive",
+    count: "two",
     wheels: &[wheel("left", 0.0, 1.0, 0.0), wheel("right", 0.0, -1.0, 0.0)],
     mecanum: false,
     on_mecanum: None,
@@ -109,6 +115,7 @@ const FOUR_WHEEL: RobotType = RobotType {
     word: "fw",
     noun: "a four-wheel robot",
     label: "Four-wheel skid-steer drive",
+    count: "four",
     wheels: &[
         wheel("left_front", 1.0, 1.0, 0.0),
         wheel("left_rear", -1.0, 1.0, 0.0),
@@ -130,6 +137,7 @@ const MECANUM: RobotType = RobotType {
     word: "fwh",
     noun: "a mecanum robot",
     label: "Mecanum drive",
+    count: "four",
     wheels: &[
         wheel("left_front", 1.0, 1.0, -1.0),
         wheel("left_rear", -1.0, 1.0, 1.0),
@@ -202,6 +210,19 @@ mod tests {
             assert!(sum(|wheel| wheel.left) + sum(|wheel| wheel.ahead) + sum(|wheel| wheel.push) == 0.0);
         }
         assert!(Drive::ALL.into_iter().all(|drive| drive.wheel_count() <= MAX_WHEELS));
+    }
+
+    #[test]
+    fn bodies_and_numbers_are_the_same_in_words() {
+        let mut bodies = Vec::new();
+        for count in Drive::wheel_counts() {
+            let rows: Vec<_> = Drive::with_wheels(count).map(Drive::row).collect();
+            let (length, width) = rows[0].body;
+            let wheels = if bodies.is_empty() { " wheels" } else { "" };
+            bodies.push(format!("`[{length:.2}, {width:.2}]` with {}{wheels}", rows[0].count));
+            assert!(rows.iter().all(|row| (row.body, row.count) == (rows[0].body, rows[0].count)));
+        }
+        assert_eq!(Drive::BODIES, bodies.join(", "));
     }
 
     #[test]

@@ -86,14 +86,9 @@ pub(super) fn wheel_orders() -> String {
     let types = Drive::wheel_counts().into_iter().filter_map(|count| Drive::with_wheels(count).next());
     let orders = types.enumerate().map(|(index, drive)| {
         let wheels = if index == 0 { " wheels" } else { "" };
-        format!("{}{wheels} as {}", in_words(drive.wheel_count()), drive.row().order())
+        format!("{}{wheels} as {}", drive.row().count, drive.row().order())
     });
     format!("list {}", orders.collect::<Vec<_>>().join("; or "))
-}
-
-pub(super) fn in_words(count: usize) -> String {
-    const WORDS: [&str; 5] = ["no", "one", "two", "three", "four"];
-    WORDS.get(count).map_or_else(|| count.to_string(), |&word| word.to_owned())
 }
 
 /// Where the type is written or could be.

@@ -6,7 +6,7 @@ use pydslrep_syntax::ast::{Drive, Entity, Name, Robot};
 use super::context::Context;
 use super::problem::Problem;
 use super::rule::{Applicability, Checks, Page, Rule};
-use super::wheel_count::{fitting, in_words, type_place};
+use super::wheel_count::{fitting, type_place};
 use crate::Severity;
 
 pub(super) static RULE: Rule = Rule {
@@ -59,14 +59,13 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
     let mecanum = known.iter().filter(|(_, mecanum)| *mecanum).count();
     let one_kind = mecanum == 0 || mecanum == known.len();
     // Without a type it follows from the wheels, if these are of one kind.
-    let wanted = drive.or_else(|| Drive::inferred(count, || one_kind && mecanum > 0));
-    let wants_mecanum = wanted.is_some_and(|drive| drive.row().mecanum);
-    let Some((odd, _)) = known.iter().find(|(_, mecanum)| *mecanum != wants_mecanum) else { return };
+    let Some(wanted) = drive.or_else(|| Drive::inferred(count, || one_kind && mecanum > 0)) else { return };
+    let Some((odd, _)) = known.iter().find(|(_, mecanum)| *mecanum != wanted.row().mecanum) else { return };
     let place = type_place(robot).unwrap_or(odd.span);
     let driven = drive.map(|drive| drive.driven(|| mecanum == count)).filter(|driven| Some(*driven) != drive);
     let problem = match driven {
         Some(driven) => all_mecanum(place, driven),
-        None => mixed(context, place, drive, wants_mecanum, count, odd),
+        None => mixed(context, place, drive, wanted, odd),
     };
     let problem =
         problem.note("a `wheel` rolls straight; a `wheelH` has rollers and lets a robot slide sideways");
@@ -74,35 +73,34 @@ fn check(context: &Context<'_>, problems: &mut Vec<Problem>) {
 }
 
 fn all_mecanum(place: Span, driven: Drive) -> Problem {
-    let (count, noun, word) = (in_words(driven.wheel_count()), driven.row().noun, driven.word());
+    let (count, noun, word) = (driven.row().count, driven.row().noun, driven.word());
     RULE.problem(place, format!("{count} `wheelH` make {noun}, which is type `{word}`"))
         .severity(Severity::Warning)
         .help(format!("write `type {word}`; that is how it will be driven"))
 }
 
-fn mixed(
-    context: &Context<'_>,
-    place: Span,
-    drive: Option<Drive>,
-    wants_mecanum: bool,
-    count: usize,
-    odd: &Name,
-) -> Problem {
-    let (wanted, other) = if wants_mecanum { ("wheelH", "wheel") } else { ("wheel", "wheelH") };
+fn mixed(context: &Context<'_>, place: Span, drive: Option<Drive>, wanted: Drive, odd: &Name) -> Problem {
+    let row = wanted.row();
+    let (wheel, other) = if row.mecanum { ("wheelH", "wheel") } else { ("wheel", "wheelH") };
+    // The first type on wheels of the other kind, of those with as many wheels if there is one.
+    let on_others = Drive::with_wheels(wanted.wheel_count())
+        .chain(Drive::ALL)
+        .map(Drive::row)
+        .find(|other| other.mecanum != row.mecanum);
+    let one_kind = on_others.is_none_or(|other| other.wheels.len() != row.wheels.len());
     let drives = match drive {
-        Some(drive) => format!("a robot of type `{}` drives on `{wanted}`", drive.word()),
-        None if count == 2 => format!("a robot with two wheels drives on `{wanted}`"),
-        None => "a robot's four wheels must be of one kind".to_owned(),
+        Some(drive) => format!("a robot of type `{}` drives on `{wheel}`", drive.word()),
+        None if one_kind => format!("a robot with {} wheels drives on `{wheel}`", row.count),
+        None => format!("a robot's {} wheels must be of one kind", row.count),
     };
-    let message = if drive.is_none() && count == 4 {
-        format!("{drives}, but `{}` is a `{other}` and others are not", odd.text)
-    } else {
+    let message = if drive.is_some() || one_kind {
         format!("{drives}, but `{}` is a `{other}`", odd.text)
+    } else {
+        format!("{drives}, but `{}` is a `{other}` and others are not", odd.text)
     };
-    let help = match drive {
-        Some(_) => format!("list only `{wanted}`, or change the robot's type"),
-        None if count == 2 => "list two `wheel`, or four `wheelH`".to_owned(),
-        None => "list four `wheel`, or four `wheelH`".to_owned(),
+    let help = match (drive, on_others) {
+        (None, Some(others)) => format!("list {} `{wheel}`, or {} `{other}`", row.count, others.count),
+        _ => format!("list only `{wheel}`, or change the robot's type"),
     };
     let problem = RULE.problem(place, message).help(help);
     match context.wheel(odd) {

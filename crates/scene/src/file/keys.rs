@@ -1,5 +1,6 @@
 //! The list of what a scene file can contain.
 
+use pydslrep_kinematics::Drive;
 use pydslrep_schema::{Key, Range, Refusal, Schema, Table, TableKind, Values, Word, key};
 
 use crate::Frame;
@@ -145,7 +146,7 @@ const TABLES: [Table; 10] = [
                 .default("`[0, 0, 0]`, each further robot a metre to the right")
                 .example("[0.5, -0.5, 90]"),
             key("body", SIZE, "Its outer length and width.")
-                .default("`[0.30, 0.30]` with two wheels, `[0.36, 0.30]` with four")
+                .default(Drive::BODIES)
                 .example("[0.5, 0.4]"),
             key("track", Values::ABOVE_ZERO, "The distance between its left and right wheels.")
                 .default("`0.30`")
