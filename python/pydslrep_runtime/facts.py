@@ -33,6 +33,7 @@ class RobotType(NamedTuple):
 
     robot: str  # the class that scripts make robots of
     drive: str  # the class that drives them
+    number: str  # of its wheels, in words
     wheels: tuple[str, ...]  # their places in order
     pushes: tuple[float, ...]  # to the left, as a share of that ahead
     mecanum: bool
@@ -45,6 +46,7 @@ ROBOT_TYPES: dict[TypeName, RobotType] = {
     "tw": RobotType(
         robot="TwoWheelRobot",
         drive="TwoWheelDrive",
+        number="two",
         wheels=("left", "right"),
         pushes=(0.0, 0.0),
         mecanum=False,
@@ -55,6 +57,7 @@ ROBOT_TYPES: dict[TypeName, RobotType] = {
     "fw": RobotType(
         robot="FourWheelRobot",
         drive="FourWheelDrive",
+        number="four",
         wheels=("left_front", "left_rear", "right_front", "right_rear"),
         pushes=(0.0, 0.0, 0.0, 0.0),
         mecanum=False,
@@ -65,6 +68,7 @@ ROBOT_TYPES: dict[TypeName, RobotType] = {
     "fwh": RobotType(
         robot="MecanumRobot",
         drive="MecanumDrive",
+        number="four",
         wheels=("left_front", "left_rear", "right_front", "right_rear"),
         pushes=(-1.0, 1.0, 1.0, -1.0),
         mecanum=True,

@@ -91,6 +91,7 @@ class RobotType(NamedTuple):
 
     robot: str  # the class that scripts make robots of
     drive: str  # the class that drives them
+    number: str  # of its wheels, in words
     wheels: tuple[str, ...]  # their places in order
     pushes: tuple[float, ...]  # to the left, as a share of that ahead
     mecanum: bool
@@ -110,6 +111,7 @@ ROBOT_TYPES: dict[TypeName, RobotType] = {{
             r#"    "{}": RobotType(
         robot="{}",
         drive="{}",
+        number="{}",
         wheels={},
         pushes={},
         mecanum={},
@@ -121,6 +123,7 @@ ROBOT_TYPES: dict[TypeName, RobotType] = {{
             row.word,
             row.class,
             row.runtime_drive,
+            row.count,
             tuple(
                 "wheels",
                 &places.clone().map(|place| format!("\"{}\"", place.identifier)).collect::<Vec<_>>()

@@ -105,8 +105,9 @@ class _Puller:
         below = [handle for handle in self._all if body in self._above(handle)]
         wheels = [wheel for each in below if (wheel := self._wheel(each, body, frame))]
         if len(wheels) not in {len(each.wheels) for each in ROBOT_TYPES.values()}:
+            numbers = dict.fromkeys(each.number for each in ROBOT_TYPES.values())
             raise _UnclearError(
-                f"{path} has {len(wheels)} wheels on joints that velocities drive, not two or four"
+                f"{path} has {len(wheels)} wheels on joints that velocities drive, not {' or '.join(numbers)}"
             )
         if frame[10] < LEVEL:
             raise _UnclearError(f"the z axis of {path} does not point up")

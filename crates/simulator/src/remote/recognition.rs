@@ -1,7 +1,7 @@
 //! From the objects that clients have created to the robots and obstacles that are simulated.
 //!
-//! A robot is a dynamic shape with two or four revolute joints below it, each of which turns a wheel: a dynamic shape
-//! that collides. Wheels that carry joints themselves have rollers: they are mecanum wheels. Obstacles are static shapes
+//! A robot is a dynamic shape with as many revolute joints below it as a type has wheels, each of which turns one: a dynamic
+//! shape that collides. Wheels that carry joints themselves have rollers: they are mecanum wheels. Obstacles are static shapes
 //! that collide and rise above the floor.
 
 use nalgebra::{Isometry3, Vector2, Vector3};
