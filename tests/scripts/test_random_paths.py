@@ -15,6 +15,7 @@ import subprocess
 from dataclasses import dataclass
 
 import pytest
+from pydslrep_runtime.facts import ROBOT_TYPES
 
 ALL, FEW = 100, 8
 
@@ -25,7 +26,10 @@ WORLDS = {
     "wear": "[noise]\ntrack-error = 3\nradius-error = -3\n",
 }
 
-WHEELS = {"tw": ("wheel", 2), "fw": ("wheel", 4), "fwh": ("wheelH", 4)}
+WHEELS = {
+    name: ("wheelH" if kind.mecanum else "wheel", len(kind.wheels))
+    for name, kind in ROBOT_TYPES.items()
+}
 
 
 @dataclass(frozen=True)
