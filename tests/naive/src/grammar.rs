@@ -8,6 +8,7 @@ use std::ops::Range;
 
 use crate::Finding;
 use crate::program::{Body, Entity, Environment, Ip, Movement, Name, Number, Program, Robot, Sensor, Wheel};
+use crate::robot_types;
 use crate::tokens::{Kind, Token};
 
 pub(crate) fn read(tokens: &[Token], end: usize) -> Option<Program> {
@@ -193,7 +194,7 @@ impl Reader<'_> {
         Some((name, Body::Ip(Ip { address: Name { text: token.text, range: token.range } })))
     }
 
-    // Robot = "robot" Name [ "type" ( "tw" | "fw" | "fwh" ) ] "with" "port" Integer
+    // Robot = "robot" Name [ "type" Type ] "with" "port" Integer
     //         "has" "{" [ Refs(Wheel) ] "}" "wheels" [ "with" "sensors" "{" Refs(Sensor) "}" ] ;
     fn robot(&mut self) -> Option<(Name, Body)> {
         let start = self.start();
@@ -221,7 +222,7 @@ impl Reader<'_> {
         Some((name, Body::Robot(Robot { drive, port, wheels, wheel_list, sensors })))
     }
 
-    // [ "type" ( "tw" | "fw" | "fwh" ) ]
+    // [ "type" Type ]
     #[allow(
         clippy::option_option,
         reason = "outside: whether it is in the language; inside: whether it is there"
@@ -231,7 +232,7 @@ impl Reader<'_> {
         if self.word("type").is_none() {
             return Some(None);
         }
-        let text = self.one_of(&["tw", "fw", "fwh"])?.to_owned();
+        let text = self.one_of(&robot_types::words())?.to_owned();
         Some(Some(Name { text, range: start..self.last_end() }))
     }
 

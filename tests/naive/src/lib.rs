@@ -10,6 +10,7 @@ mod generate;
 mod grammar;
 mod program;
 mod project;
+mod robot_types;
 mod tokens;
 
 #[cfg(test)]

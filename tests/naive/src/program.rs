@@ -114,7 +114,7 @@ pub(crate) struct Ip {
 }
 
 pub(crate) struct Robot {
-    /// `tw`, `fw` or `fwh` with its range, if present.
+    /// The word after `type` with its range, if present.
     pub(crate) drive: Option<Name>,
     pub(crate) port: Number,
     pub(crate) wheels: Vec<Name>,

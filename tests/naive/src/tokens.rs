@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
-use crate::Finding;
+use crate::{Finding, robot_types};
 
-/// The keywords, which need `^` to be names.
-const KEYWORDS: [&str; 30] = [
+/// The keywords, which need `^` to be names; so do the types of robots.
+const KEYWORDS: [&str; 27] = [
     "wheel",
     "wheelH",
     "with",
@@ -14,9 +14,6 @@ const KEYWORDS: [&str; 30] = [
     "ip",
     "robot",
     "type",
-    "tw",
-    "fw",
-    "fwh",
     "port",
     "has",
     "wheels",
@@ -146,7 +143,8 @@ impl Reader<'_> {
     /// A leading `^` escapes a keyword and is not part of the name.
     fn read_name(&mut self, length: usize) {
         let written = &self.rest()[..length];
-        let kind = if KEYWORDS.contains(&written) { Kind::Keyword } else { Kind::Name };
+        let is_keyword = KEYWORDS.contains(&written) || robot_types::words().contains(&written);
+        let kind = if is_keyword { Kind::Keyword } else { Kind::Name };
         let text = written.trim_start_matches('^').to_owned();
         self.tokens.push(Token { kind, text, range: self.at..self.at + length });
         self.at += length;

@@ -1,7 +1,7 @@
 //! Group "movement": the capabilities of a movement's robot.
 
 use super::is_among;
-use super::robot::{distance_sensors, is_four_wheeled};
+use super::robot::{distance_sensors, has_more_than_two_wheels};
 use crate::Finding;
 use crate::program::{ActionKind, Body};
 use crate::project::Scope;
@@ -20,7 +20,7 @@ pub(super) fn check(scope: Scope<'_>, findings: &mut Vec<Finding>) {
                 }
             }
             if matches!(action.kind, ActionKind::Slam) {
-                if is_four_wheeled(&robot) {
+                if has_more_than_two_wheels(&robot) {
                     findings.push(Finding::new("slam-robot", &action.range));
                 }
                 if distance_sensors(&robot).is_some_and(|count| count < 5) {

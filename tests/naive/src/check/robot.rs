@@ -4,6 +4,7 @@ use super::{is_among, repeated};
 use crate::Finding;
 use crate::program::{Action, Body, Entity, Name, Robot};
 use crate::project::{Declared, Scope};
+use crate::robot_types::{Layout, layouts};
 
 pub(super) fn check(scope: Scope<'_>, findings: &mut Vec<Finding>) {
     for entity in &scope.program().entities {
@@ -34,7 +35,7 @@ fn repeated_sensor(sensors: &[Name], findings: &mut Vec<Finding>) {
     findings.extend(repeated(sensors).map(|sensor| Finding::new("repeated-sensor", &sensor.range)));
 }
 
-/// `tw` needs 2, `fw` and `fwh` need 4; without `type` either is allowed.
+/// As many as its type has; without `type` those of any are allowed.
 fn wheel_count(robot: &Robot, findings: &mut Vec<Finding>) {
     if !has_right_count(robot) {
         findings.push(Finding::new("wheel-count", &robot.wheel_list));
@@ -42,12 +43,13 @@ fn wheel_count(robot: &Robot, findings: &mut Vec<Finding>) {
 }
 
 pub(super) fn has_right_count(robot: &Robot) -> bool {
-    let needed: &[usize] = match robot.drive.as_ref().map(|drive| drive.text.as_str()) {
-        Some("tw") => &[2],
-        Some(_) => &[4],
-        None => &[2, 4],
-    };
-    needed.contains(&robot.wheels.len())
+    fitting(robot).next().is_some()
+}
+
+/// What its type or the lack of one allows, with as many wheels.
+fn fitting(robot: &Robot) -> impl Iterator<Item = Layout> {
+    let word = robot.drive.as_ref().map(|drive| drive.text.as_str());
+    layouts(word).filter(|layout| layout.wheels == robot.wheels.len())
 }
 
 /// Warning: `fw` with four `wheelH`. Error: `fwh` with any `wheel`, `tw` with `wheelH`, mixed kinds.
@@ -58,15 +60,7 @@ fn wheel_kind_mismatch(scope: Scope<'_>, entity: &Entity, robot: &Robot, finding
         return;
     }
     let kinds = mecanum(scope, robot);
-    let any_mecanum = kinds.contains(&true);
-    let any_standard = kinds.contains(&false);
-    let mismatch = match robot.drive.as_ref().map(|drive| drive.text.as_str()) {
-        Some("fwh") => any_standard,
-        Some(_) => any_mecanum,
-        None if robot.wheels.len() == 2 => any_mecanum,
-        None => any_mecanum && any_standard,
-    };
-    if mismatch {
+    if !fitting(robot).any(|layout| kinds.iter().all(|mecanum| *mecanum == layout.mecanum)) {
         let place = robot.drive.as_ref().map_or(&entity.name.range, |drive| &drive.range);
         findings.push(Finding::new("wheel-kind-mismatch", place));
     }
@@ -109,9 +103,12 @@ fn is_right_of(one: &str, other: &str) -> bool {
         && "Ll".contains(differences[0].1)
 }
 
-/// By its type, or by its wheels; with three wheels and no type it is incomplete.
-pub(super) fn is_four_wheeled(robot: &Robot) -> bool {
-    robot.drive.as_ref().map_or(robot.wheels.len() == 4, |drive| drive.text != "tw")
+/// More than two wheels by its type, or by its wheels; with three wheels and no type it is incomplete.
+pub(super) fn has_more_than_two_wheels(robot: &Robot) -> bool {
+    match &robot.drive {
+        Some(drive) => layouts(Some(&drive.text)).any(|layout| layout.wheels > 2),
+        None => fitting(robot).any(|layout| layout.wheels > 2),
+    }
 }
 
 /// The number of distinct distance sensors; `None` if a sensor is unknown.

@@ -8,6 +8,7 @@ use super::statements::Piece;
 use super::words::{self, ADDRESSES, ANGLES, DISTANCES, ENDLESS, Numbers, PORTS, RADII, SPEEDS};
 
 use crate::Source;
+use crate::robot_types::{self, LAYOUTS, Layout};
 
 /// The properties of a robot that its users depend on.
 struct Robot {
@@ -171,7 +172,7 @@ impl Author {
     }
 
     /// A new name for a declaration; a taken one by error.
-    fn new_name(&mut self, taken: &[String], words: &[&'static str]) -> String {
+    fn new_name(&mut self, taken: &[String], words: &[&str]) -> String {
         if !taken.is_empty() && self.slips() {
             let index = self.choices.below(taken.len());
             return taken[index].clone();
@@ -241,7 +242,7 @@ impl Author {
         self.wheel_called(mecanum, self.names())
     }
 
-    fn wheel_called(&mut self, mecanum: bool, names: &[&'static str]) -> String {
+    fn wheel_called(&mut self, mecanum: bool, names: &[&str]) -> String {
         let taken = self.wheels.clone();
         let name = self.new_name(&taken, names);
         let mecanum = mecanum != self.slips();
@@ -288,14 +289,7 @@ impl Author {
 
     /// A robot with its wheels and sensors, unless it uses those of another.
     fn robot(&mut self) {
-        let (drive, count, mecanum) = self.choices.pick(&[
-            (Some("tw"), 2, false),
-            (None, 2, false),
-            (Some("fw"), 4, false),
-            (Some("fwh"), 4, true),
-            (None, 4, true),
-            (None, 4, false),
-        ]);
+        let Layout { word: drive, wheels: count, mecanum } = self.choices.pick(&LAYOUTS);
         let wheels = self.some_wheels(count, mecanum);
         let sensors = self.some_sensors();
         let taken: Vec<String> = self.robots.iter().map(|robot| robot.name.clone()).collect();
@@ -309,7 +303,8 @@ impl Author {
 
     fn declare_robot(&mut self, robot: &Robot, drive: Option<&'static str>) {
         let drive = if self.slips() {
-            self.choices.pick(&[None, Some("tw"), Some("fw"), Some("fwh")])
+            let words = robot_types::words().into_iter().map(Some);
+            self.choices.pick(&[None].into_iter().chain(words).collect::<Vec<_>>())
         } else {
             drive
         };
@@ -355,7 +350,7 @@ impl Author {
             return (0..count).map(|_| self.wheel(mecanum)).collect();
         }
         // By their sides; some in another order, which is only a hint.
-        let names: &[&'static str] = if count == 2 { &words::TWO_SIDES } else { &words::FOUR_CORNERS };
+        let names = words::by_sides(count);
         let mut wheels: Vec<String> = names.iter().map(|name| self.wheel_called(mecanum, &[name])).collect();
         if self.choices.once_in(3) {
             self.choices.shuffle(&mut wheels);

@@ -53,9 +53,12 @@ pub(super) const NEW_NAMES: [&str; 32] = [
     "reverse", "import", "^wait", "class", "^if", "rounds", "^else", "time", "Repeat",
 ];
 
-/// Names of the wheels of one robot, by their sides.
-pub(super) const TWO_SIDES: [&str; 2] = ["wheelL", "wheelR"];
-pub(super) const FOUR_CORNERS: [&str; 4] = ["wheelL0", "wheelL1", "wheelR0", "wheelR1"];
+/// Names of the wheels of one robot, by their sides: `wheelL`, or `wheelL0` if there are several on a side.
+pub(super) fn by_sides(wheels: usize) -> Vec<String> {
+    let number = |index: usize| if wheels == 2 { String::new() } else { index.to_string() };
+    let side = |side: &'static str| (0..wheels / 2).map(move |index| format!("wheel{side}{}", number(index)));
+    side("L").chain(side("R")).collect()
+}
 
 /// Names whose script would shadow a module, or almost.
 pub(super) const SCRIPTS: [&str; 12] =
@@ -64,7 +67,7 @@ pub(super) const SCRIPTS: [&str; 12] =
 /// Keywords in the list above, which need an escape.
 const MUST_ESCAPE: [&str; 1] = ["robot"];
 
-pub(super) fn name(choices: &mut Choices, from: &[&'static str]) -> String {
+pub(super) fn name(choices: &mut Choices, from: &[&str]) -> String {
     let name = choices.pick(from);
     if MUST_ESCAPE.contains(&name) { format!("^{name}") } else { name.to_owned() }
 }
