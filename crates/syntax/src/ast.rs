@@ -302,6 +302,7 @@ impl ActionKind {
 }
 
 impl Action {
+    #[expect(clippy::inline_always, reason = "as above")]
     #[inline(always)]
     fn parts(&self) -> Parts<'_> {
         self.kind.parts().1
