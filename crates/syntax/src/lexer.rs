@@ -48,32 +48,37 @@ pub(crate) fn lex_unless<'t>(
     tokens
 }
 
-/// Characters that begin no token come one by one; adjacent ones are one mistake, and so is `robot-1`.
+/// Adds a token, or what it has of one without a gap between them to that one.
 fn push(text: &str, tokens: &mut Vec<Token>, token: TokenKind, span: Span) {
-    if let [before @ .., (last_token, last)] = &mut tokens[..]
-        && last.end == span.start
-    {
-        let goes_on = match (*last_token, token) {
-            (TokenKind::Invalid, TokenKind::Invalid) => true,
-            (name, TokenKind::Integer | TokenKind::Float | TokenKind::MalformedNumber) => {
-                let exponent =
-                    before.last().is_some_and(|(token, span)| token.is_number() && span.end == last.start);
-                may_begin_name(name) && !exponent && span.text(text).starts_with('-')
-            }
-            // `robot-1a`
-            (TokenKind::MalformedName, word) => {
-                let after_digit = last.text(text).ends_with(|c: char| c.is_ascii_digit());
-                (word.is_name() || word.is_keyword()) && after_digit && !span.text(text).starts_with('^')
-            }
-            _ => false,
-        };
-        if goes_on {
-            *last_token = if token == TokenKind::Invalid { token } else { TokenKind::MalformedName };
-            last.end = span.end;
-            return;
-        }
+    let adjacent = tokens.last().is_some_and(|(_, last)| last.end == span.start);
+    if !adjacent || !goes_on(text, tokens, token, span) {
+        tokens.push((token, span));
     }
-    tokens.push((token, span));
+}
+
+/// Characters that begin no token come one by one; adjacent ones are one mistake, and so is `robot-1`. Adds a token to the
+/// adjacent one before it where they are one mistake.
+fn goes_on(text: &str, tokens: &mut [Token], token: TokenKind, span: Span) -> bool {
+    let [before @ .., (last_token, last)] = tokens else { return false };
+    let goes_on = match (*last_token, token) {
+        (TokenKind::Invalid, TokenKind::Invalid) => true,
+        (name, TokenKind::Integer | TokenKind::Float | TokenKind::MalformedNumber) => {
+            let exponent =
+                before.last().is_some_and(|(token, span)| token.is_number() && span.end == last.start);
+            may_begin_name(name) && !exponent && span.text(text).starts_with('-')
+        }
+        // `robot-1a`
+        (TokenKind::MalformedName, word) => {
+            let after_digit = last.text(text).ends_with(|c: char| c.is_ascii_digit());
+            (word.is_name() || word.is_keyword()) && after_digit && !span.text(text).starts_with('^')
+        }
+        _ => false,
+    };
+    if goes_on {
+        *last_token = if token == TokenKind::Invalid { token } else { TokenKind::MalformedName };
+        last.end = span.end;
+    }
+    goes_on
 }
 
 /// Returns whether a number right after the token is meant as a part of a name, as no number follows it. (`move-4` is a

@@ -15,6 +15,8 @@ pub(super) struct Piece<'s> {
     tokens: Box<[Token]>,
     /// The tokens the parser sees, where they are others.
     corrected: Option<Vec<Token>>,
+    /// What it does not see, because it is in too many blocks.
+    deep: Vec<Span>,
     /// Actions that need not be read again.
     pub(super) known: Vec<Known<'s>>,
 }
@@ -25,8 +27,8 @@ impl<'s> Piece<'s> {
         let tokens = relocate(tokens, span.start);
         let deep = deep_blocks(&tokens);
         let corrected = corrected(text, &tokens, &deep);
-        let mut piece = Self { text, span, tokens, corrected, known: Vec::new() };
-        if let Some(earlier) = earlier.filter(|earlier| earlier.now == span && deep.is_empty()) {
+        let mut piece = Self { text, span, tokens, corrected, deep, known: Vec::new() };
+        if let Some(earlier) = earlier.filter(|earlier| earlier.now == span && piece.deep.is_empty()) {
             piece.known = known_actions(earlier, piece.significant());
         }
         piece
@@ -40,7 +42,7 @@ impl<'s> Piece<'s> {
     /// What it is, given its tree and what the rules complained about.
     pub(super) fn parse(self, entity: Option<Entity>, faults: Vec<Fault>) -> Parse {
         let mut faults = with_beginning(&self.tokens, self.significant(), faults);
-        faults.extend(deep_blocks(&self.tokens).into_iter().map(Fault::Skipped));
+        faults.extend(self.deep.iter().copied().map(Fault::Skipped));
         let kind = entity.as_ref().and_then(Entity::kind);
         let errors = errors::of_faults(self.text, kind, self.significant(), &self.tokens, &faults);
         let skipped_names = errors::skipped_names(self.text, &self.tokens, &faults);
