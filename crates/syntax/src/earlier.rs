@@ -33,6 +33,9 @@ impl<'a> Earlier<'a> {
     /// The tokens from `start` on that are as they were, with how far they have moved, where a token begins there after one
     /// that ends at `previous`.
     fn tokens_at(&self, start: u32, previous: Option<u32>) -> Option<(&'a [Token], i64)> {
+        if !(self.now.start..self.now.end).contains(&start) {
+            return None;
+        }
         let tokens = &self.parse.tokens;
         let offset = i64::from(self.now.start);
         if start == self.now.start {

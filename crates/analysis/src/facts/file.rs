@@ -6,7 +6,7 @@ use pydslrep_syntax::{Earlier, LOOKAHEAD, Parse, Span, Token, cut, lex_again, pa
 use ropey::Rope;
 
 use crate::entity::EntityId;
-use crate::facts::slots::EntitySlots;
+use crate::facts::slots::{EntitySlot, EntitySlots};
 
 /// One document.
 #[derive(Debug, Clone)]
@@ -52,8 +52,8 @@ impl File {
         after: Rope,
         parse_of: impl Fn(EntityId) -> Option<&'a Parse>,
     ) -> Window {
-        let (first, first_start) =
-            self.window_start(span.start, |entity| parse_of(entity).map_or(&[], |parse| &parse.tokens));
+        let tokens_of = |entity| parse_of(entity).map_or(&[][..], |parse| &parse.tokens);
+        let (first, first_start) = self.window_start(span.start, tokens_of);
         let (touched, touched_start) = self.slots.at(span.end);
         let before = self.slots.at(span.start).0 - first;
         let untouched = |window: &Range<usize>| (before, window.end - touched - 1);
@@ -80,7 +80,8 @@ impl File {
                 let window = Span::new(first_start, Span::of_rope(&self.text).len());
                 Some(parse_again(&window.slice(&self.text), earlier))
             } else {
-                self.read_up_to(&from, end, end_offset, &mut relexed)
+                let ahead = end_offset + ahead(&self.slots[end..], tokens_of);
+                self.read_up_to(&from, end_offset, ahead, &mut relexed)
             };
             if let Some(parses) = parses {
                 let replaced = first..end.min(self.slots.len());
@@ -94,20 +95,19 @@ impl File {
         }
     }
 
-    /// Reads up to what was at `end_offset`, where the slot `end` began, if it still begins there: a token begins on it
-    /// and still begins an entity. Whether it does depends on that token and the few after it, and each slot has at least
-    /// one; from there on nothing can have changed.
+    /// Reads up to what was at `end_offset`, where a slot began, if it still begins there: a token begins on it and still
+    /// begins an entity. Whether it does depends on that token and the few after it, which ended at `ahead`; from there on
+    /// nothing can have changed.
     fn read_up_to(
         &self,
         from: &ReadFrom<'_>,
-        end: usize,
         end_offset: u32,
+        ahead: u32,
         relexed: &mut usize,
     ) -> Option<Vec<(Span, Parse)>> {
         let ReadFrom { start, growth, earlier } = *from;
         let boundary = shift(end_offset, growth);
-        let ahead: u32 = self.slots[end..].iter().take(1 + LOOKAHEAD).map(|slot| slot.len).sum();
-        let text = Span::new(start, shift(end_offset + ahead, growth)).slice(&self.text);
+        let text = Span::new(start, end_of_line(&self.text, shift(ahead, growth))).slice(&self.text);
         let tokens = lex_again(&text, earlier.as_ref());
         *relexed += tokens.len();
         let starts = cut(&text, &tokens);
@@ -121,14 +121,14 @@ impl File {
 
     /// The first slot to read again. Whether a slot begins where it does depends on its first token, those few after
     /// it and what is before; so that many of its tokens must be as they were.
-    fn window_start<'a>(&self, offset: u32, lexemes_of: impl Fn(EntityId) -> &'a [Token]) -> (usize, u32) {
+    fn window_start<'a>(&self, offset: u32, tokens_of: impl Fn(EntityId) -> &'a [Token]) -> (usize, u32) {
         const NEEDED: usize = 1 + LOOKAHEAD;
         let (mut index, mut start) = self.slots.at(offset);
         let (mut settled, mut untouched) = (offset, 0);
         loop {
-            let lexemes = lexemes_of(self.slots[index].entity);
-            let before = lexemes.partition_point(|(_, span)| span.start + start < settled);
-            for (token, span) in lexemes[..before].iter().rev() {
+            let tokens = tokens_of(self.slots[index].entity);
+            let before = tokens.partition_point(|(_, span)| span.start + start < settled);
+            for (token, span) in tokens[..before].iter().rev() {
                 if span.end + start >= settled {
                     // Tokens without a gap between them can become one, as `left`, `.` and what is typed after that do.
                     settled = span.start + start;
@@ -146,6 +146,28 @@ impl File {
             start -= self.slots[index].len;
         }
     }
+}
+
+/// How far the tokens of these slots reach on which it depends whether the first slot begins where it does.
+fn ahead<'a>(slots: &[EntitySlot], tokens_of: impl Fn(EntityId) -> &'a [Token]) -> u32 {
+    let mut needed = 1 + LOOKAHEAD;
+    let mut start = 0;
+    for slot in slots {
+        let words = tokens_of(slot.entity).iter().filter(|(token, _)| !token.is_comment());
+        let (left, end) = words.take(needed).fold((needed, 0), |(left, _), (_, span)| (left - 1, span.end));
+        if left == 0 {
+            return start + end;
+        }
+        needed = left;
+        start += slot.len;
+    }
+    start
+}
+
+/// The end of the line of an offset. A token never depends on the next line, unless it reaches to it.
+fn end_of_line(text: &Rope, offset: u32) -> u32 {
+    let line = text.byte_to_line(offset as usize);
+    pydslrep_text::offset(text.line_to_byte((line + 1).min(text.len_lines())))
 }
 
 fn shift(offset: u32, by: i64) -> u32 {
