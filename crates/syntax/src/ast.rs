@@ -369,28 +369,22 @@ impl<'a> Iterator for Nested<'a> {
     fn next(&mut self) -> Option<&'a Action> {
         loop {
             if let Some(action) = self.open.last_mut()?.next() {
-                let mut blocks = action.blocks().peekable();
+                let mut blocks = action.blocks();
                 // Most actions have none.
-                if blocks.peek().is_some() {
-                    let depth = self.open.len();
-                    let first = self.blocks.len();
+                if let Some(block) = blocks.next() {
+                    let (depth, first) = (self.open.len(), self.blocks.len());
                     self.blocks.extend(blocks.map(|block| (depth, block)));
                     self.blocks[first..].reverse();
-                    self.enter(depth);
+                    self.open.push(block.actions.iter());
                 }
                 return Some(action);
             }
             self.open.pop();
-            self.enter(self.open.len());
-        }
-    }
-}
-
-impl Nested<'_> {
-    /// Goes on with the next block of the action at this depth, if there is one.
-    fn enter(&mut self, depth: usize) {
-        if let Some((_, block)) = self.blocks.pop_if(|(owner, _)| *owner == depth) {
-            self.open.push(block.actions.iter());
+            let depth = self.open.len();
+            // The next block of the action that the ended one is of.
+            if let Some((_, block)) = self.blocks.pop_if(|(owner, _)| *owner == depth) {
+                self.open.push(block.actions.iter());
+            }
         }
     }
 }

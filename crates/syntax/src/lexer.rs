@@ -49,6 +49,8 @@ pub(crate) fn lex_unless<'t>(
 }
 
 /// Adds a token, or what it has of one without a gap between them to that one.
+// For each token of a file.
+#[inline]
 fn push(text: &str, tokens: &mut Vec<Token>, token: TokenKind, span: Span) {
     let adjacent = tokens.last().is_some_and(|(_, last)| last.end == span.start);
     if !adjacent || !goes_on(text, tokens, token, span) {

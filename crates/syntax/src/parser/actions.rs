@@ -34,11 +34,11 @@ const TURN_CLAUSES: TokenSet = WITH.or(AT).or(IN).or(UNTIL);
 
 type Actions<'s> = Rule<'s, Vec<Action>>;
 
-/// `{ … }` of a movement.
-pub(super) fn block<'s>() -> Rule<'s, Block> {
+/// `{ … }` of a movement, of which some actions may be known if it is read `again`.
+pub(super) fn block<'s>(again: bool) -> Rule<'s, Block> {
     let actions = recursive(|actions| {
-        let item = action(&inner_block(&actions.boxed()));
-        item.repeated().collect::<Vec<_>>().map(|actions| actions.into_iter().flatten().collect())
+        let item = action(&inner_block(&actions.boxed()), again);
+        item.repeated().fold(Vec::new(), with_understood)
     });
     let open = slot(just(TokenKind::OpenBrace).ignored(), OPEN, ACTIONS.or(CLOSE));
     as_block(open.ignore_then(actions).then_ignore(close()))
@@ -57,8 +57,23 @@ fn as_block<'s>(actions: impl Parser<'s, Input<'s>, Vec<Action>, Extra<'s>> + Cl
     actions.map_with(|actions, extra| Block { actions, span: extra.span() }).boxed()
 }
 
-/// One action; several where a block belongs to nothing that is known, and none where nothing was understood.
-fn action<'s>(block: &Rule<'s, Block>) -> Actions<'s> {
+fn with_understood(mut actions: Vec<Action>, more: Understood) -> Vec<Action> {
+    match more {
+        Understood::One(action) => actions.push(action),
+        Understood::Others(more) => actions.extend(more),
+    }
+    actions
+}
+
+/// What is understood of one statement.
+#[expect(clippy::large_enum_variant, reason = "nearly all are actions, which are moved only once")]
+enum Understood {
+    One(Action),
+    /// The actions in a block that belongs to nothing that is known; none where nothing was understood.
+    Others(Vec<Action>),
+}
+
+fn action<'s>(block: &Rule<'s, Block>, again: bool) -> Rule<'s, Understood> {
     // Rules that several others share are built once: a key typed in a movement builds all of them anew.
     let until = until(NEXT);
     let (waits, repeats) = (after_wait(&until), after_repeat(block));
@@ -78,13 +93,15 @@ fn action<'s>(block: &Rule<'s, Block>) -> Actions<'s> {
         do_action(),
         just(TokenKind::Slam).to(ActionKind::Slam),
     ));
-    let known = choice((known_action(), spanned(kinds))).labelled(Expected::Action);
+    let kinds = spanned(kinds).boxed();
+    let kinds = if again { choice((known_action(), kinds)).boxed() } else { kinds };
     let misspelt = spanned(spelt(misspelt_action));
-    known
-        .map(|action| vec![action])
-        .recover_with(via_parser(misspelt.map(|action| vec![action])))
-        .recover_with(via_parser(unknown_block(block)))
-        .recover_with(via_parser(skip_statement(NEXT).to(Vec::new())))
+    kinds
+        .labelled(Expected::Action)
+        .recover_with(via_parser(misspelt))
+        .map(Understood::One)
+        .recover_with(via_parser(unknown_block(block).map(Understood::Others)))
+        .recover_with(via_parser(skip_statement(NEXT).map(|()| Understood::Others(Vec::new()))))
         .boxed()
 }
 

@@ -168,7 +168,7 @@ struct Parser<'s> {
     rules: [Option<Rule<'s, Option<Entity>>>; RULES],
 }
 
-const RULES: usize = 8;
+const RULES: usize = 9;
 
 impl<'s> Parser<'s> {
     fn new() -> Self {
@@ -183,11 +183,15 @@ impl<'s> Parser<'s> {
         known: &'s [Known<'s>],
     ) -> (Option<Entity>, Vec<Fault>) {
         let Some(&(first, _)) = significant.first() else { return (None, Vec::new()) };
-        let (index, build) = rule_for(first);
+        let (index, build) = rule_for(first, !known.is_empty());
         let rule = self.rules[index].get_or_insert_with(build);
         let input = significant.split_token_span(Span::at(Span::of(text).end));
-        let count = |brace| significant.iter().filter(|(token, _)| *token == brace).count();
-        let closed = count(TokenKind::CloseBrace).cmp(&count(TokenKind::OpenBrace));
+        let open = significant.iter().fold(0_i64, |open, (token, _)| match token {
+            TokenKind::OpenBrace => open + 1,
+            TokenKind::CloseBrace => open - 1,
+            _ => open,
+        });
+        let closed = 0.cmp(&open);
         let mut state = SimpleState(Source { text, closed, known });
         let (tree, faults) = rule.parse_with_state(input, &mut state).into_output_errors();
         (tree.flatten(), faults)
@@ -196,13 +200,15 @@ impl<'s> Parser<'s> {
 
 type Build<'s> = fn() -> Rule<'s, Option<Entity>>;
 
-fn rule_for<'s>(first: TokenKind) -> (usize, Build<'s>) {
+/// The place of a rule and how it is built, for an entity that begins so; `again` if some of its actions are known.
+fn rule_for<'s>(first: TokenKind, again: bool) -> (usize, Build<'s>) {
     match first.entity_kind() {
         Some(EntityKind::Wheel) => (1, || components::wheel()),
         Some(EntityKind::Sensor) => (2, || components::sensor()),
         Some(EntityKind::Ip) => (3, || components::ip()),
         Some(EntityKind::Robot) => (4, || robot::robot()),
-        Some(EntityKind::Movement) => (5, || movement::movement()),
+        Some(EntityKind::Movement) if again => (8, || movement::movement(true)),
+        Some(EntityKind::Movement) => (5, || movement::movement(false)),
         Some(EntityKind::Environment) => (6, || environment::environment()),
         None if first == TokenKind::Import => (7, || components::import()),
         None => (0, || components::preamble()),

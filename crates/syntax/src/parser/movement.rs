@@ -10,8 +10,8 @@ use crate::{EntityKind, TokenKind, TokenSet};
 
 const OF: TokenSet = TokenSet::of(&[TokenKind::Of]);
 
-/// `parallel movement name of robot { … }`
-pub(super) fn movement<'s>() -> Rule<'s, Option<Entity>> {
+/// `parallel movement name of robot { … }`, of which some actions may be known if it is read `again`.
+pub(super) fn movement<'s>(again: bool) -> Rule<'s, Option<Entity>> {
     let body = ACTIONS.or(CLOSE);
     let parallel = just(TokenKind::Parallel)
         .map_with(|_, extra| extra.span())
@@ -21,7 +21,7 @@ pub(super) fn movement<'s>() -> Rule<'s, Option<Entity>> {
         .then(declared_name(EntityKind::Movement, OF, OPEN.or(body)))
         .then_ignore(keyword(TokenKind::Of, NAME, OPEN.or(body)))
         .then(reference(EntityKind::Robot, OPEN, body))
-        .then(block())
+        .then(block(again))
         .then_ignore(nothing_more())
         .map(|(((parallel, name), robot), block)| {
             Some(Entity::Movement(Movement {
