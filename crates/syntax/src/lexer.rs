@@ -48,9 +48,7 @@ pub(crate) fn lex_unless<'t>(
     tokens
 }
 
-/// Adds a token, or what it has of one without a gap between them to that one.
-// For each token of a file.
-#[inline]
+/// Adds a token: to the one before it where both are one mistake, else after it.
 fn push(text: &str, tokens: &mut Vec<Token>, token: TokenKind, span: Span) {
     let adjacent = tokens.last().is_some_and(|(_, last)| last.end == span.start);
     if !adjacent || !goes_on(text, tokens, token, span) {
@@ -58,8 +56,8 @@ fn push(text: &str, tokens: &mut Vec<Token>, token: TokenKind, span: Span) {
     }
 }
 
-/// Characters that begin no token come one by one; adjacent ones are one mistake, and so is `robot-1`. Adds a token to the
-/// adjacent one before it where they are one mistake.
+/// Adds a token to the adjacent one before it if both are one mistake, and returns whether they are. Characters that begin no
+/// token come one by one: adjacent ones are one mistake, and so is `robot-1`.
 fn goes_on(text: &str, tokens: &mut [Token], token: TokenKind, span: Span) -> bool {
     let [before @ .., (last_token, last)] = tokens else { return false };
     let goes_on = match (*last_token, token) {

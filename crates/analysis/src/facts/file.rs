@@ -148,7 +148,7 @@ impl File {
     }
 }
 
-/// How far the tokens of these slots reach on which it depends whether the first slot begins where it does.
+/// How far the first tokens of these slots reach, from the start of the first slot: those that decide whether it begins there.
 fn ahead<'a>(slots: &[EntitySlot], tokens_of: impl Fn(EntityId) -> &'a [Token]) -> u32 {
     let mut needed = 1 + LOOKAHEAD;
     let mut start = 0;

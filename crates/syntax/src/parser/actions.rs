@@ -57,6 +57,7 @@ fn as_block<'s>(actions: impl Parser<'s, Input<'s>, Vec<Action>, Extra<'s>> + Cl
     actions.map_with(|actions, extra| Block { actions, span: extra.span() }).boxed()
 }
 
+/// The actions with what is understood of the next statement.
 fn with_understood(mut actions: Vec<Action>, more: Understood) -> Vec<Action> {
     match more {
         Understood::One(action) => actions.push(action),
@@ -68,11 +69,13 @@ fn with_understood(mut actions: Vec<Action>, more: Understood) -> Vec<Action> {
 /// What is understood of one statement.
 #[expect(clippy::large_enum_variant, reason = "nearly all are actions, which are moved only once")]
 enum Understood {
+    /// The action that it is.
     One(Action),
     /// The actions in a block that belongs to nothing that is known; none where nothing was understood.
     Others(Vec<Action>),
 }
 
+/// One statement.
 fn action<'s>(block: &Rule<'s, Block>, again: bool) -> Rule<'s, Understood> {
     // Rules that several others share are built once: a key typed in a movement builds all of them anew.
     let until = until(NEXT);
