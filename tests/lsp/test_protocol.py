@@ -265,7 +265,7 @@ def test_a_tracing_client_gets_the_cost_of_changes(server: str) -> None:
         [received] = logged_before(raw, 2)
         assert received["message"] == f"changed {URI}"
         assert received["verbose"] == (
-            "relexed: 25 tokens, reparsed: 2 entities, revalidated: 4 entities"
+            "relexed: 23 tokens, reparsed: 2 entities, revalidated: 4 entities"
         )
         raw.send(traced("off"), inserted(5, wheel))
         assert logged_before(raw, 3) == []

@@ -96,8 +96,8 @@ impl File {
     }
 
     /// Reads up to what was at `end_offset`, where a slot began, if it still begins there: a token begins on it and still
-    /// begins an entity. Whether it does depends on that token and the few after it, which ended at `ahead`; from there on
-    /// nothing can have changed.
+    /// begins an entity. Whether it does depends on that token and the few after it, which ended at `ahead`. What is after that
+    /// is not needed: a token that reaches further reaches there, too.
     fn read_up_to(
         &self,
         from: &ReadFrom<'_>,
@@ -107,7 +107,7 @@ impl File {
     ) -> Option<Vec<(Span, Parse)>> {
         let ReadFrom { start, growth, earlier } = *from;
         let boundary = shift(end_offset, growth);
-        let text = Span::new(start, end_of_line(&self.text, shift(ahead, growth))).slice(&self.text);
+        let text = Span::new(start, shift(ahead, growth)).slice(&self.text);
         let tokens = lex_again(&text, earlier.as_ref());
         *relexed += tokens.len();
         let starts = cut(&text, &tokens);
@@ -162,12 +162,6 @@ fn ahead<'a>(slots: &[EntitySlot], tokens_of: impl Fn(EntityId) -> &'a [Token]) 
         start += slot.len;
     }
     start
-}
-
-/// The end of the line of an offset. A token never depends on the next line, unless it reaches to it.
-fn end_of_line(text: &Rope, offset: u32) -> u32 {
-    let line = text.byte_to_line(offset as usize);
-    pydslrep_text::offset(text.line_to_byte((line + 1).min(text.len_lines())))
 }
 
 fn shift(offset: u32, by: i64) -> u32 {
