@@ -1,6 +1,6 @@
 //! The mapping from metres on the floor to pixels in the picture.
 
-use pydslrep_scene::{Obstacle, Trajectory};
+use pydslrep_scene::Obstacle;
 
 use crate::route::{Route, is_drawable};
 
@@ -48,15 +48,9 @@ impl View {
             }
         }
         for obstacle in obstacles {
-            let path = obstacle.trajectory.iter().flat_map(Trajectory::points);
-            let way = path.map(|point| (point.x - obstacle.pose.x, point.y - obstacle.pose.y));
-            let ways: Vec<(f64, f64)> = std::iter::once((0.0, 0.0)).chain(way).collect();
-            // Four corners give the extent of a circle.
-            for ((corner_x, corner_y), way) in
-                obstacle.outline(4).into_iter().flat_map(|corner| ways.iter().map(move |way| (corner, way)))
-            {
-                x.include(corner_x + way.0, 0.0);
-                y.include(corner_y + way.1, 0.0);
+            for corner in obstacle.corners_on_its_way() {
+                x.include(corner.0, 0.0);
+                y.include(corner.1, 0.0);
             }
         }
         let (mut x, mut y) = (x.at_least(MIN_SPAN / 2.0), y.at_least(MIN_SPAN / 2.0));

@@ -79,6 +79,17 @@ impl Obstacle {
         let placed = own.into_iter().map(|(x, y)| self.pose.compose(&Pose::new(x, y, 0.0)));
         placed.map(|corner| (corner.x, corner.y)).collect()
     }
+
+    /// The corners of its outline at each point of its trajectory; for a circle, four points of it.
+    pub fn corners_on_its_way(&self) -> Vec<(f64, f64)> {
+        let path = self.trajectory.iter().flat_map(Trajectory::points);
+        let ways = path.map(|point| (point.x - self.pose.x, point.y - self.pose.y));
+        let ways: Vec<(f64, f64)> = std::iter::once((0.0, 0.0)).chain(ways).collect();
+        let corners = self.outline(4);
+        ways.iter()
+            .flat_map(|(x, y)| corners.iter().map(move |corner| (corner.0 + x, corner.1 + y)))
+            .collect()
+    }
 }
 
 #[cfg(test)]

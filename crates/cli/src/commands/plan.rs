@@ -96,7 +96,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         planned.draw(&arguments.pictures, "planned path", &planned.routes())?;
         arguments.pictures.report(&Reporter::for_people());
         if let Some(path) = &arguments.mjcf {
-            write_output(path, Kind::World, mjcf(&planned.scene).as_bytes())?;
+            write_output(path, Kind::World, mjcf(&planned.scene, &planned.plan.robots).as_bytes())?;
             output::say(&format!("world: {}\n", path.display()));
         }
     }

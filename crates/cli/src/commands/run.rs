@@ -351,7 +351,8 @@ impl Run<'_> {
     }
 
     fn world(&self, folder: &Path) -> Result<World, Failure> {
-        World::write(&self.simulated_scene(), folder, self.arguments.speed, self.arguments.view)
+        let Self { arguments, planned, .. } = self;
+        World::write(&self.simulated_scene(), &planned.plan.robots, folder, arguments.speed, arguments.view)
     }
 
     /// Returns whether only the script knows some of the paths.

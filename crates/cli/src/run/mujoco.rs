@@ -4,6 +4,7 @@ use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use pydslrep_kinematics::RobotPath;
 use pydslrep_scene::{Scene, mjcf};
 
 use crate::failure::Failure;
@@ -17,18 +18,19 @@ pub(crate) struct World {
 }
 
 impl World {
-    /// Writes a scene into a folder; `speed` is in simulated seconds per second.
+    /// Writes a scene, in which `paths` are planned, into a folder; `speed` is in simulated seconds per second.
     ///
     /// # Errors
     /// If it cannot be written.
     pub(crate) fn write(
         scene: &Scene,
+        paths: &[RobotPath],
         folder: &Path,
         speed: Option<f64>,
         view: bool,
     ) -> Result<Self, Failure> {
         let path = folder.join("world.xml");
-        fs::write(&path, mjcf(scene)).map_err(|error| Failure::unwritten(&path, &error))?;
+        fs::write(&path, mjcf(scene, paths)).map_err(|error| Failure::unwritten(&path, &error))?;
         Ok(Self { path, speed, view })
     }
 

@@ -90,7 +90,7 @@ impl Node {
                 command.env(TOKEN, token);
             }
             World::MuJoCo(scene) => {
-                command.args(mujoco::World::write(scene, folder.path(), None, false)?.arguments());
+                command.args(mujoco::World::write(scene, &[], folder.path(), None, false)?.arguments());
             }
         }
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).kill_on_drop(true);

@@ -7,10 +7,11 @@
 
 mod obstacles;
 mod robots;
+mod view;
 mod wheels;
 mod xml;
 
-use pydslrep_kinematics::motion;
+use pydslrep_kinematics::{RobotPath, motion};
 
 use self::obstacles::World;
 use self::xml::Element;
@@ -39,8 +40,8 @@ fn floor_friction(scene: &Scene) -> [f64; 3] {
     [scene.friction, 0.005, 0.0001]
 }
 
-/// The world of a scene for `MuJoCo`.
-pub fn mjcf(scene: &Scene) -> String {
+/// The world of a scene for `MuJoCo`, whose viewer shows the paths that are planned in it, if any, at first.
+pub fn mjcf(scene: &Scene, paths: &[RobotPath]) -> String {
     let world = World::of(scene);
     let robots: Vec<_> = scene.robots.iter().map(|robot| robots::robot(robot, scene)).collect();
     let (bodies, motors): (Vec<Element>, Vec<Vec<Element>>) = robots.into_iter().unzip();
@@ -53,10 +54,12 @@ pub fn mjcf(scene: &Scene) -> String {
             .text("integrator", "implicitfast")
             .text("cone", "elliptic")
             .numbers("impratio", &[10.0]),
+        view::light(),
+        view::view(scene, paths),
         Element::new("size").text("nuser_jnt", "4").text("nuser_site", "2"),
         Element::new("custom").with(numbers(scene)).with(world.paths),
         defaults,
-        Element::new("asset").with(world.meshes),
+        Element::new("asset").with(view::floor_material()).with(world.meshes),
         Element::new("worldbody").with([floor(scene)]).with(world.bodies).with(bodies),
         contacts,
         Element::new("actuator").with(motors.into_iter().flatten()),
@@ -79,7 +82,7 @@ fn floor(scene: &Scene) -> Element {
         .text("contype", FLOOR.to_string())
         .text("conaffinity", "0")
         .numbers("friction", &floor_friction(scene))
-        .numbers("rgba", &[0.93, 0.93, 0.91, 1.0])
+        .text("material", view::FLOOR_MATERIAL)
 }
 
 /// Returns the numbers that do not belong to the physics.

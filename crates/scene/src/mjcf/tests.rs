@@ -1,7 +1,7 @@
 //! Worlds as they are written.
 
 use expect_test::{Expect, expect};
-use pydslrep_kinematics::Drive;
+use pydslrep_kinematics::{Drive, MotionPrimitive, RobotPlan, Run, plan};
 
 use super::mjcf;
 use crate::{Noise, Robot, Scene, SensorKind, Wheel, read};
@@ -12,11 +12,16 @@ fn robot(name: &str, drive: Drive, sensors: &[&str]) -> Robot {
     Robot::new(name, drive, wheels, sensors)
 }
 
+/// The world of robots of which no path is planned.
+fn world(scene: &Scene) -> String {
+    mjcf(scene, &[])
+}
+
 #[track_caller]
 fn check(robots: Vec<Robot>, scene: &str, expected: &Expect) -> String {
     let (scene, problems) = read(scene, Scene::empty_floor(robots));
     assert_eq!(problems, []);
-    let text = mjcf(&scene);
+    let text = world(&scene);
     expected.assert_eq(&text);
     text
 }
@@ -31,13 +36,21 @@ fn a_two_wheel_robot_stands_on_casters() {
             <mujoco model="pydslrep">
               <compiler angle="radian"/>
               <option timestep="0.002" integrator="implicitfast" cone="elliptic" impratio="10"/>
+              <visual>
+                <headlight ambient="0.5 0.5 0.5" diffuse="0.45 0.45 0.45" specular="0 0 0"/>
+              </visual>
+              <statistic center="1 2 0" extent="1.5"/>
               <size nuser_jnt="4" nuser_site="2"/>
               <custom>
                 <numeric name="step" data="0.05"/>
                 <numeric name="seed" data="1"/>
               </custom>
+              <asset>
+                <texture name="squares" type="2d" builtin="checker" width="256" height="256" rgb1="0.93 0.93 0.91" rgb2="0.88 0.88 0.86"/>
+                <material name="squares" texture="squares" texuniform="true" texrepeat="0.5 0.5"/>
+              </asset>
               <worldbody>
-                <geom name="floor" type="plane" size="0 0 1" contype="1" conaffinity="0" friction="0.3 0.005 0.0001" rgba="0.93 0.93 0.91 1"/>
+                <geom name="floor" type="plane" size="0 0 1" contype="1" conaffinity="0" friction="0.3 0.005 0.0001" material="squares"/>
                 <body name="rover" pos="1 2 0" quat="0.707106781 0 0 0.707106781">
                   <freejoint/>
                   <geom type="box" size="0.15 0.15 0.05" pos="0 0 0.07" mass="4" contype="4" conaffinity="7" friction="0.3 0.005 0.0001" rgba="0.2 0.45 0.7 0.6"/>
@@ -67,7 +80,7 @@ fn a_two_wheel_robot_stands_on_casters() {
 fn wheels_that_scrub_touch_the_floor_in_their_own_way() {
     let robots = vec![robot("plain", Drive::FourWheel, &[]), robot("other", Drive::Mecanum, &[])];
     let (scene, _) = read("[world]\nfriction = 0.3\n", Scene::empty_floor(robots));
-    let text = mjcf(&scene);
+    let text = world(&scene);
     let pairs: Vec<&str> = text.lines().map(str::trim).filter(|line| line.starts_with("<pair ")).collect();
     expect![[r#"
         <pair condim="4" friction="0.3 0.3 0.005 0.0001 0.0001" solreffriction="0.1 1" solimp="0.1 0.9 0.0005"/>
@@ -91,6 +104,10 @@ fn obstacles_stand_and_move() {
             <mujoco model="pydslrep">
               <compiler angle="radian"/>
               <option timestep="0.002" integrator="implicitfast" cone="elliptic" impratio="10"/>
+              <visual>
+                <headlight ambient="0.5 0.5 0.5" diffuse="0.45 0.45 0.45" specular="0 0 0"/>
+              </visual>
+              <statistic center="2.75 2.4 0" extent="7.2"/>
               <size nuser_jnt="4" nuser_site="2"/>
               <custom>
                 <numeric name="step" data="0.05"/>
@@ -99,10 +116,12 @@ fn obstacles_stand_and_move() {
                 <numeric name="repeat/obstacle/a &lt;post&gt;" data="1"/>
               </custom>
               <asset>
+                <texture name="squares" type="2d" builtin="checker" width="256" height="256" rgb1="0.93 0.93 0.91" rgb2="0.88 0.88 0.86"/>
+                <material name="squares" texture="squares" texuniform="true" texrepeat="0.5 0.5"/>
                 <mesh name="obstacle/polygon_1/1" inertia="shell" vertex="0 1 0 0 0 0 1 0 0 0 1 0.5 0 0 0.5 1 0 0.5"/>
               </asset>
               <worldbody>
-                <geom name="floor" type="plane" size="0 0 1" contype="1" conaffinity="0" friction="0.8 0.005 0.0001" rgba="0.93 0.93 0.91 1"/>
+                <geom name="floor" type="plane" size="0 0 1" contype="1" conaffinity="0" friction="0.8 0.005 0.0001" material="squares"/>
                 <body name="obstacle/wall_1" pos="1 1 0" quat="1 0 0 0">
                   <geom type="box" contype="2" conaffinity="0" friction="0.3 0.005 0.0001" rgba="0.62 0.62 0.65 1" pos="0 0 0.25" size="1 0.05 0.25"/>
                 </body>
@@ -128,7 +147,7 @@ fn robots_pass_through_what_does_not_stop_them() {
         "[world]\ncollisions = false\n[[box]]\nat = [0, 0]\nsize = [1, 1]\n",
         Scene::empty_floor(robots),
     );
-    let text = mjcf(&scene);
+    let text = world(&scene);
     let solid: Vec<&str> = text.lines().filter(|line| line.contains("contype=\"")).collect();
     assert!(solid.len() > 5);
     for line in solid {
@@ -146,7 +165,7 @@ fn attributes(text: &str, element: &str, key: &str) -> Vec<Vec<f64>> {
 
 #[test]
 fn rollers_touch_the_floor_along_the_way_that_a_wheel_pushes() {
-    let text = mjcf(&Scene::empty_floor(vec![robot("m", Drive::Mecanum, &[])]));
+    let text = world(&Scene::empty_floor(vec![robot("m", Drive::Mecanum, &[])]));
     let axes = attributes(&text, "joint", "axis");
     // A wheel's own joint, then those of its rollers; the first one is at the bottom.
     let lowest: Vec<f64> = axes.chunks(10).map(|wheel| wheel[1][1] / wheel[1][0]).collect();
@@ -156,7 +175,7 @@ fn rollers_touch_the_floor_along_the_way_that_a_wheel_pushes() {
 
 #[test]
 fn mecanum_wheels_are_round() {
-    let text = mjcf(&Scene::empty_floor(vec![robot("m", Drive::Mecanum, &[])]));
+    let text = world(&Scene::empty_floor(vec![robot("m", Drive::Mecanum, &[])]));
     let ellipsoids = attributes(&text, "geom", "size");
     let ellipsoid =
         ellipsoids.iter().find(|size| size.len() == 3 && size[0] > 0.0 && size[2] > size[0]).unwrap();
@@ -176,9 +195,27 @@ fn wheels_are_not_what_scripts_believe_them_to_be() {
     let noise = Noise { track_error: 0.1, radius_error: -0.2, ..Noise::default() };
     let scene =
         Scene { noise: Some(noise), seed: 7, ..Scene::empty_floor(vec![robot("r", Drive::TwoWheel, &[])]) };
-    let text = mjcf(&scene);
+    let text = world(&scene);
     assert_eq!(attributes(&text, "joint", "user")[0], [0.05, 0.0, 0.15, 1.0]);
     let places = attributes(&text, "body", "pos");
     assert_eq!(places[1], [0.0, 0.165, 0.04]);
     assert_eq!(attributes(&text, "numeric", "data"), [vec![0.05], vec![7.0], vec![0.02, 0.01]]);
+}
+
+#[test]
+fn what_will_be_driven_is_in_view() {
+    let (scene, _) = read(
+        "[robots.rover]\nstart = [1, 2, 90]\n[[cylinder]]\nradius = 0.2\npath = [[0, 2, 0], [30, 2, -1]]\n",
+        Scene::empty_floor(vec![robot("rover", Drive::TwoWheel, &[])]),
+    );
+    let actions = vec![MotionPrimitive::Move { distance: 4.0, speed: 0.1 }];
+    let rover = RobotPlan { model: scene.robots[0].model().unwrap(), start: scene.robots[0].start };
+    let plan = plan(&[rover], &[vec![Run { robot: 0, actions }]]).unwrap();
+    let text = mjcf(&scene, &plan.robots);
+    let reach = scene.robots[0].body.reach();
+    let (left, right, low, high) = (1.0 - reach, 2.2, -1.2, 6.0 + reach);
+    let [center, extent] = ["center", "extent"].map(|key| attributes(&text, "statistic", key).concat());
+    assert!((center[0] - f64::midpoint(left, right)).abs() < 1e-6, "{center:?}");
+    assert!((center[1] - f64::midpoint(low, high)).abs() < 1e-6, "{center:?}");
+    assert!((extent[0] - (high - low)).abs() < 1e-6, "{extent:?}");
 }
