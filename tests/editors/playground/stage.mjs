@@ -137,6 +137,14 @@ export class Playground {
     return this.page.locator("#examples").selectOption(example);
   }
 
+  /** Waits until the program's tab has a number of errors, or of warnings if there are no errors; none if it is 0. */
+  async counts(number, severity = "error") {
+    const badge = this.page.locator("#tab-program .badge");
+    const wanted = this.page.locator(number === 0 ? "[hidden]" : `[data-severity="${severity}"]:not([hidden])`);
+    const shown = number === 0 ? badge.and(wanted) : badge.and(wanted).and(this.page.getByText(`${number}`, { exact: true }));
+    await shown.waitFor({ state: "attached" });
+  }
+
   /** Waits until the preview shows the path of an environment. */
   async pathShown(environment) {
     const which = environment === undefined ? "" : `[data-environment="${environment}"]`;

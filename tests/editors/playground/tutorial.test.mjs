@@ -139,17 +139,9 @@ async function counted(severities) {
   const warnings = severities.length - errors;
   const text = await playground.text();
   await playground.write(`${text}wheel wrong with radius -1\n`);
-  await badge(errors + 1);
+  await playground.counts(errors + 1);
   await playground.write(text);
-  await badge(errors || warnings);
-}
-
-/** Waits until the program's tab has a number; none if it is 0. */
-function badge(number) {
-  return playground.page.waitForFunction((wanted) => {
-    const { hidden, textContent } = document.querySelector("#tab-program .badge");
-    return wanted === 0 ? hidden : !hidden && textContent === String(wanted);
-  }, number);
+  await playground.counts(errors || warnings, errors ? "error" : "warning");
 }
 
 test("the tutorial", async (t) => {
