@@ -222,6 +222,18 @@ def standing(
     return world, robot
 
 
+def test_the_whole_planned_path_is_in_view(
+    command: str, tmp_path: pathlib.Path
+) -> None:
+    condition = "until { front } detect within 50 centimeters"
+    write(tmp_path, YARD.replace(condition, "5 meters"))
+    plan(command, tmp_path, "--mjcf", "world.xml")
+    engine = importlib.import_module("pydslrep_runtime.mujoco_engine")
+    view = engine.MuJoCo(tmp_path / "world.xml").model.stat
+    assert list(view.center) == pytest.approx([2.5, 0.0, 0.0], abs=0.01)
+    assert view.extent > 5.0
+
+
 def roll(
     world: Any, robot: Any, speed: float, shares: tuple[float, ...], seconds: float
 ) -> None:
