@@ -203,7 +203,7 @@ def test_a_robot_that_is_another_one_is_told_with_the_topics(
         "nobody publishes /other/odom",
         "The topics there are: /clock, /rover/cmd_vel, /rover/odom",
     )
-    # It waits for /other as long as it may, and that has to be long enough to find the others on a busy machine.
+    # The script waits for /other until its limit, which must be long enough to find the other topics on a busy machine.
     for limit in (3, 12, END_LIMIT // 2):
         monkeypatch.setenv("PYDSLREP_TIME_LIMITS", f"CONNECT_TIMEOUT={limit}")
         process = script(DRIVE, 'ros2={"namespace": "/other"}')

@@ -309,7 +309,7 @@ inPage("every example opens without errors", async (playground, page) => {
       const environment = /^environment (\w+)/m.exec(await playground.text())[1];
       await playground.pathShown(environment);
     }
-    // One more, so that the page shows another number until the server has read the next example.
+    // One more error, so that the page shows another number until the server has read the next example.
     await playground.write(`${await playground.text()}wheel wrong with radius -1\n`);
     await playground.counts(severity === "error" ? number + 1 : 1);
   }

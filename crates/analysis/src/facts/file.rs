@@ -96,8 +96,8 @@ impl File {
     }
 
     /// Reads up to what was at `end_offset`, where a slot began, if it still begins there: a token begins on it and still
-    /// begins an entity. Whether it does depends on that token and the few after it, which ended at `ahead`. What is after that
-    /// is not needed: a token that reaches further reaches there, too.
+    /// begins an entity. Whether it does depends on that token and the few after it, which ended at `ahead`. The text after
+    /// that is not needed: a token that ends later covers this place, too.
     fn read_up_to(
         &self,
         from: &ReadFrom<'_>,

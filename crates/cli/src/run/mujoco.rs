@@ -18,7 +18,7 @@ pub(crate) struct World {
 }
 
 impl World {
-    /// Writes a scene, in which `paths` are planned, into a folder; `speed` is in simulated seconds per second.
+    /// Writes a scene into a folder, with the planned `paths` in view; `speed` is in simulated seconds per second.
     ///
     /// # Errors
     /// If it cannot be written.

@@ -40,7 +40,7 @@ fn floor_friction(scene: &Scene) -> [f64; 3] {
     [scene.friction, 0.005, 0.0001]
 }
 
-/// The world of a scene for `MuJoCo`, whose viewer shows the paths that are planned in it, if any, at first.
+/// The world of a scene for `MuJoCo`. When its viewer opens, the planned `paths` are in view; there may be none.
 pub fn mjcf(scene: &Scene, paths: &[RobotPath]) -> String {
     let world = World::of(scene);
     let robots: Vec<_> = scene.robots.iter().map(|robot| robots::robot(robot, scene)).collect();

@@ -1,4 +1,4 @@
-//! What a viewer shows: at first, robots with the paths that are planned for them, and obstacles; and the floor in squares.
+//! What `MuJoCo`'s viewer shows: where its camera looks when it opens, the light, and the floor.
 
 use pydslrep_kinematics::{Pose, RobotPath};
 
@@ -11,7 +11,8 @@ const MIN_SPAN: f64 = 1.5;
 /// Points of a planned leg that are looked at; arcs have to be in view, too.
 const POINTS_PER_LEG: u32 = 8;
 
-/// The middle and the size of the world: viewers look at the middle from one and a half times the size away.
+/// The middle and the size of what is in view when the viewer opens: obstacles, and robots with their planned paths. The camera
+/// looks at the middle from one and a half times the size away.
 pub(super) fn view(scene: &Scene, paths: &[RobotPath]) -> Element {
     let points: Vec<(f64, f64)> = robots(scene, paths)
         .chain(obstacles(scene))
@@ -53,7 +54,7 @@ pub(super) fn light() -> Element {
 /// The name of the floor's material.
 pub(super) const FLOOR_MATERIAL: &str = "squares";
 
-/// Squares of a metre, so that one sees how far robots drive.
+/// One-metre squares, which show how far robots drive.
 pub(super) fn floor_material() -> [Element; 2] {
     let squares = Element::new("texture")
         .text("name", FLOOR_MATERIAL)
