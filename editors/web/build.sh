@@ -12,9 +12,9 @@ folder=${profile/#dev/debug}
 
 cd "$root"
 cargo build --quiet --locked --package pydslrep-browser --target wasm32-unknown-unknown --profile "$profile"
-cargo build --quiet --locked --manifest-path "$here/bindgen/Cargo.toml" --target-dir "$target/bindgen"
+cargo build --quiet --locked --manifest-path "$here/bindgen/Cargo.toml" --target-dir "$target"
 rm -rf "$here/dist"
-"$target/bindgen/debug/pydslrep-bindgen" "$target/wasm32-unknown-unknown/$folder/pydslrep_browser.wasm" "$here/dist"
+"$target/debug/pydslrep-bindgen" "$target/wasm32-unknown-unknown/$folder/pydslrep_browser.wasm" "$here/dist"
 
 "$root/tests/install/npm.sh" "$here"
 PATH=$("$root/tests/install/node.sh"):$PATH

@@ -5,7 +5,7 @@
 * `pydslrep`: a program without errors and warnings. With `wrong`, it has some; with `fragment`, it is a part of a program
   and only its syntax is checked.
 * `console`: commands after `$`, with their output. `sh`: commands that are looked up, and run if the block says `run`. With
-  `slow`, they are run in hosted checks only, and when outputs are written anew.
+  `slow`, they are run at full length only (`tests/run.sh --long`), and when outputs are written anew.
 * A picture of a page that its commands make is the one that they make.
 
 `UPDATE_EXPECT=1` writes outputs and pictures anew.
@@ -30,7 +30,7 @@ import pytest
 from pages import PAGES, ROOT, Block, Session, blocks, commands, comparable, pictures
 
 UPDATE = "UPDATE_EXPECT" in os.environ
-IS_PATIENT = UPDATE or "CI" in os.environ
+IS_PATIENT = UPDATE or "LONG" in os.environ
 SCHEMAS = [
     json.loads((ROOT / "editors" / name).read_text(encoding="utf-8"))
     for name in ("pydslrep.schema.json", "scene.schema.json")

@@ -39,7 +39,10 @@ def main() -> None:
         run,
         lambda outcome: print(report.line(outcome), flush=True),
     )
-    outcomes = schedule.finish()
+    try:
+        outcomes = schedule.finish()
+    except KeyboardInterrupt:
+        sys.exit(f"interrupted; the output so far is in {jobs.LOGS}")
     print(report.end(outcomes, time.monotonic() - begin, jobs.ROOT))
     sys.exit(0 if all(outcome.succeeded for outcome in outcomes) else 1)
 
@@ -77,8 +80,8 @@ def variables(long: bool) -> dict[str, str]:
     if long:
         found |= {"LONG": "1", **AMOUNTS}
     if "CI" in found:
-        # Incremental compilation costs time that only the next build saves.
-        found["CARGO_INCREMENTAL"] = "0"
+        # Only the next build would save what incremental compilation costs, and nobody is there to read debug information.
+        found |= {"CARGO_INCREMENTAL": "0", "CARGO_PROFILE_DEV_DEBUG": "false"}
     return found
 
 

@@ -23,7 +23,7 @@ from session import ROOT, open_session
 
 PACES = (30, 70, 150)
 # Without `--all`, a few programs are typed at the first pace, and the first one also at the second.
-FEW_PACES = (70, 30)
+FEW_PACES = (30, 70)
 # How long saving a file may take, seconds: the editor may have keys to handle before.
 TIMEOUT = 30.0
 SIGNS = {
