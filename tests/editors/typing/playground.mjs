@@ -46,7 +46,7 @@ const ACTIONS = {
   },
 
   async type(details) {
-    return coverage(playground.page, () => type(playground.page, details));
+    return coverage(playground.page, details.patient, () => type(playground.page, details));
   },
 
   async save({ file }) {

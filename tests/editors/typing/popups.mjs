@@ -1,12 +1,41 @@
 // Whether popups cover what is being typed.
 
-/** Types, and returns the seconds that it took with the popups that covered the line of the cursor, or the one above. */
-export async function coverage(page, typed) {
-  await page.evaluate(() => {
+/** Frames after which a popup does not go away by itself, however slow the server is. */
+const STAYS = 600;
+
+/**
+ * Types, and returns the seconds that it took with the popups that covered the line of the cursor, or the one above. If it is
+ * `patient`, each key waits until they are gone (`uncovered`), and those that stay count.
+ */
+export async function coverage(page, patient, typed) {
+  await page.evaluate((patient) => {
     globalThis.covered = {};
-  });
+    globalThis.isPatient = patient;
+  }, patient);
   const seconds = await typed();
   return { seconds, covered: Object.values(await page.evaluate(() => globalThis.covered)) };
+}
+
+/**
+ * Waits until no popup covers the line, after the answer of the server that closes or moves the one of the key before: a list
+ * that was below a line is over it once that wraps.
+ */
+export function uncovered(page) {
+  return page.evaluate(
+    (limit) =>
+      new Promise((resolve) => {
+        let frames = 0;
+        const look = () => {
+          const { covered, covering } = globalThis;
+          frames += 1;
+          if (Object.keys(covering).every((what) => what in covered)) resolve();
+          else if (frames > limit) resolve(Object.assign(covered, covering));
+          else requestAnimationFrame(look);
+        };
+        look();
+      }),
+    STAYS,
+  );
 }
 
 /**
@@ -22,11 +51,12 @@ function watchInPage({ host, popups, cursor: cursorOf, line: lineOf, roomBelow }
   const root = (host && document.querySelector(host).shadowRoot) || document;
   const hasRoomBelow = (cursor, box) => roomBelow !== undefined && cursor.bottom + box.height + roomBelow < globalThis.innerHeight;
   globalThis.covered = {};
+  globalThis.covering = {};
   // The editor moves a popup up to two frames after the text: a lens above the line, or a new line, is drawn first.
   const FRAMES = 3;
   const frames = new Map();
   const check = () => {
-    const seen = new Set();
+    const seen = {};
     const cursor = root.querySelector(cursorOf)?.getBoundingClientRect();
     for (const [name, selector] of cursor?.height ? Object.entries(popups) : []) {
       for (const popup of root.querySelectorAll(selector)) {
@@ -40,21 +70,24 @@ function watchInPage({ host, popups, cursor: cursorOf, line: lineOf, roomBelow }
             "the line above the one being typed";
         if (where) {
           const lines = [...root.querySelectorAll(lineOf)];
-          const line = lines.find((one) => Math.abs(one.getBoundingClientRect().top - cursor.top) < 3)?.textContent;
+          // One that wraps is as high as all its rows.
+          const holdsCursor = ({ top, bottom }) => top < cursor.top + 3 && cursor.top + 3 < bottom;
+          const line = lines.find((one) => holdsCursor(one.getBoundingClientRect()))?.textContent;
           const what = `${name} over ${where}`;
-          seen.add(what);
+          seen[what] = `${what}: ${line?.replaceAll("\u00a0", " ")}`;
           frames.set(what, (frames.get(what) ?? 0) + 1);
-          if (frames.get(what) === FRAMES) {
-            globalThis.covered[what] ??= `${what}: ${line?.replaceAll("\u00a0", " ")}`;
+          if (frames.get(what) === FRAMES && !globalThis.isPatient) {
+            globalThis.covered[what] ??= seen[what];
           }
         }
       }
     }
     for (const what of frames.keys()) {
-      if (!seen.has(what)) {
+      if (!(what in seen)) {
         frames.delete(what);
       }
     }
+    globalThis.covering = seen;
     requestAnimationFrame(check);
   };
   check();

@@ -4,6 +4,8 @@ import { mkdirSync } from "node:fs";
 import path from "node:path";
 import readline from "node:readline";
 
+import { uncovered } from "./popups.mjs";
+
 /** Frames without a change after which nothing more is expected from the server, after the keys that make it format. */
 const STILL = { Enter: 12, "}": 60 };
 
@@ -16,7 +18,8 @@ function press(keyboard, key) {
 
 /**
  * Presses keys, one each `pace` seconds. `frames` is a folder for ten screenshots. If it is `patient`, the next key is pressed
- * when the editor has drawn the one before, and after those that it formats when what they change has been drawn, too.
+ * when the editor has drawn the one before and no popup covers the line any more, and after those that it formats when what
+ * they change has been drawn, too.
  */
 export async function type(page, { keys, pace, frames, patient }) {
   const start = performance.now();
@@ -29,6 +32,7 @@ export async function type(page, { keys, pace, frames, patient }) {
     await press(page.keyboard, key);
     if (patient) {
       await drawn(page, STILL[key] ?? 1);
+      await uncovered(page);
     }
     if (frames && Math.floor((number * 10) / keys.length) < Math.floor(((number + 1) * 10) / keys.length)) {
       await takeFrame(page, frames, Math.floor(((number + 1) * 10) / keys.length));

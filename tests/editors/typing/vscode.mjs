@@ -38,7 +38,7 @@ const ACTIONS = {
   },
 
   async type(details) {
-    return coverage(stage.page, () => type(stage.page, details));
+    return coverage(stage.page, details.patient, () => type(stage.page, details));
   },
 
   async save() {
