@@ -20,7 +20,7 @@ main.main()
 """
 
 
-def test_an_interrupted_run_says_so_and_leaves_nothing_behind(tmp_path: Path) -> None:
+def test_an_interrupted_run_says_so(tmp_path: Path) -> None:
     process = subprocess.Popen(
         [sys.executable, "-c", SLOW, str(tmp_path)],
         cwd=Path(main.__file__).parent,
