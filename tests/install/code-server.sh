@@ -19,7 +19,7 @@ if ! is_there; then
   rm -rf "$cache" "$cache.part"
   mkdir -p "$cache.part"
   echo '{"private": true}' > "$cache.part/package.json"
-  # Builds its native modules with the headers of this Node, and does not optimise them, which takes longer than all else.
+  # Builds its native modules with the headers of this Node, and without optimising them, which would take as long as all the rest.
   CFLAGS=-O0 CXXFLAGS=-O0 PATH=$node:$PATH npm_config_nodedir=$(dirname "$node") npm_config_ignore_scripts=false \
     npm install --prefix "$cache.part" --no-audit --no-fund --loglevel error "code-server@$version" >&2
   mv "$cache.part" "$cache"
