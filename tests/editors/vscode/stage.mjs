@@ -233,7 +233,30 @@ export class Stage {
 
   /** Puts the cursor in a word of a line. */
   async clickWord(line, word) {
-    await this.line(line).first().locator("span span", { hasText: word }).first().click();
+    await this.line(line).first().click({ position: await this.#middleOf(line, word) });
+  }
+
+  /** Puts the mouse over a word of a line. */
+  async hoverWord(line, word) {
+    await this.line(line).first().hover({ position: await this.#middleOf(line, word) });
+  }
+
+  /** Where the middle of a word is in its line, which may not have colours yet: it is then one element, however many words it has. */
+  async #middleOf(line, word) {
+    return this.line(line).first().evaluate((row, sought) => {
+      const texts = document.createTreeWalker(row, NodeFilter.SHOW_TEXT);
+      const range = document.createRange();
+      while (texts.nextNode()) {
+        const at = texts.currentNode.data.indexOf(sought);
+        if (at >= 0) {
+          range.setStart(texts.currentNode, at);
+          range.setEnd(texts.currentNode, at + sought.length);
+          const [place, origin] = [range.getBoundingClientRect(), row.getBoundingClientRect()];
+          return { x: place.x + place.width / 2 - origin.x, y: place.y + place.height / 2 - origin.y };
+        }
+      }
+      throw new Error(`"${row.textContent}" has no "${sought}" of one colour`);
+    }, word);
   }
 
   /** The visible text of the editor, with single spaces. */

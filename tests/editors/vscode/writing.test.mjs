@@ -70,7 +70,7 @@ test("a problem's code, the light bulb and a command open its page", async () =>
     // *Show Problem* has put the cursor there.
     await stage.page.keyboard.press("Control+1");
   };
-  await stage.line("movement patrol of").first().locator("span span", { hasText: "rovr" }).first().hover();
+  await stage.hoverWord("movement patrol of", "rovr");
   await stage.page.locator(".monaco-hover a.code-link", { hasText: "unresolved-reference" }).first().click();
   await close();
   await stage.call("PyDSLRep: Explain This Problem");
@@ -146,7 +146,7 @@ for (const { before, letter, offered, after } of LATE) {
 }
 
 test("hovering over a robot shows its equations", async () => {
-  await stage.line("robot rover").first().locator("span span", { hasText: "rover" }).first().hover();
+  await stage.hoverWord("robot rover", "rover");
   const hover = stage.page.locator(".monaco-hover .hover-contents, .monaco-resizable-hover .hover-contents");
   await hover.filter({ hasText: "wheelL" }).first().waitFor();
   await stage.page.mouse.move(5, 5);
