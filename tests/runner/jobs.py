@@ -47,8 +47,6 @@ def rust_tests() -> str:
 
 SITE = "tests/site/run.sh"
 NODE = "tests/install/with-node.sh"
-ALONE = 1000
-"""More processors than there are: nothing else runs beside it."""
 NATIVE, WEB = "target/tests/native-package", "target/tests/web-package"
 """Files that name the packages of the extension."""
 
@@ -182,11 +180,10 @@ def in_editors() -> list[Job]:
         command: str,
         *after: str,
         read: Callable[[str], results.Results] | None = None,
-        processors: int = 1,
     ) -> Job:
         read = read or results.of_node_in(f"{editor} {name}")
         needed = (*ready, *after)
-        return Job(name, (command,), needed, read, processors, editor=True)
+        return Job(name, (command,), needed, read, editor=True)
 
     return [
         job(
@@ -201,8 +198,6 @@ def in_editors() -> list[Job]:
             f"{packages} {editor} typing --patient ${{LONG:+--all}}",
             "packages",
             read=results.of_typing,
-            # Alone: an editor drops what the server formats when the next key has come before.
-            processors=ALONE,
         ),
         job("preview", f"{editor} preview"),
         job("neovim", f"{editor} neovim", read=results.of_neovim),
@@ -227,9 +222,9 @@ def in_editors() -> list[Job]:
 # What begins last: after each part that keeps both processors of a small machine busy, one that mostly waits.
 LATE = (
     *("python", "vscode"),
-    *("rust", "playground"),
-    *("clippy", "preview"),
-    *("neovim", "documentation", "web", "typing"),
+    *("typing", "rust"),
+    *("clippy", "playground"),
+    *("preview", "neovim", "documentation", "web"),
 )
 
 
