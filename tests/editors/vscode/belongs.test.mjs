@@ -38,7 +38,7 @@ test("a scene has colours and actions", async () => {
 
 test("F5 in a scene runs its environment", async () => {
   await stage.keyOf("PyDSLRep: Run in Simulator", "F5");
-  await stage.line("start =").first().click();
+  await stage.clickLine("start =");
   await stage.page.keyboard.press("F5");
   const frame = await stage.webview("main.preview");
   await frame.locator('[data-part="result"]', { hasText: /yard: .* simulated in/ }).waitFor();
@@ -66,11 +66,11 @@ test("a scene follows when its environment is renamed", async () => {
 async function writeScene(scene) {
   // Quick Open may not know the new name yet.
   await stage.tab("hall.scene.toml").click();
-  await stage.line("[robots.guard]").first().click();
+  await stage.clickLine("[robots.guard]");
   await stage.page.keyboard.press("Control+A");
   await stage.page.keyboard.insertText(scene);
   await stage.tab("yard.pyr").click();
-  await stage.line("move 50").first().click();
+  await stage.clickLine("move 50");
 }
 
 const FREE = SCENE.replace("rover", "guard");
@@ -96,7 +96,7 @@ test("a failed run says where, and marks its action until the next one", async (
 test("the message of a failed run opens the preview, which then has it", async () => {
   await writeScene(BLOCKED);
   await closePreview();
-  await stage.line("move 50").first().click();
+  await stage.clickLine("move 50");
   await stage.page.keyboard.press("F5");
   await stage.toast(/Robot guard, movement patrol, action 1: .*line 7/, "Show Path");
   const frame = await stage.webview("main.preview");

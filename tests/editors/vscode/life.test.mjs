@@ -23,7 +23,7 @@ test("a killed server is restarted with the open documents", async () => {
       const now = stage.servers().filter((id) => id !== first);
       return now.length > 0 && now;
     });
-    await stage.line("wheel").first().click();
+    await stage.clickLine("wheel");
     await stage.page.keyboard.press("End");
     await stage.page.keyboard.press("Backspace");
     await stage.page.keyboard.press("Backspace");

@@ -44,7 +44,7 @@ test("an empty file that was opened before the extension loaded is indented by t
 
 test("an empty file says what to do until the first character", async () => {
   await until("the hint is shown", async () => (await ghost()).includes("press Ctrl+Space"));
-  await stage.line("").first().click();
+  await stage.clickLine("");
   await stage.type("r");
   await until("the hint is hidden", async () => (await ghost()) === "");
   await stage.page.keyboard.press("Backspace");
@@ -66,7 +66,7 @@ test("a file is indented by two, whatever it contains", async () => {
 });
 
 test("enter after a brace indents", async () => {
-  await stage.line("").first().click();
+  await stage.clickLine("");
   await stage.type("robot r has { a } wheels");
   await stage.page.keyboard.press("Enter");
   await stage.type("movement m of r ");

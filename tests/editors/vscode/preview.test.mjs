@@ -23,7 +23,7 @@ const drawCount = () => frame.locator("main.preview").getAttribute("data-drawn")
 
 test("the preview opens next to the program by its keys", async () => {
   await stage.keyOf("PyDSLRep: Show Path Preview", "Ctrl+K");
-  await stage.line("parallel movement cross_1").first().click();
+  await stage.clickLine("parallel movement cross_1");
   await stage.page.keyboard.press("Control+K");
   await stage.page.keyboard.press("v");
   frame = await stage.webview("main.preview");
@@ -98,7 +98,7 @@ test("latency from a key to the picture", async (t) => {
 
 /** Puts the cursor after a word of a line. */
 async function cursorAfter(line, word) {
-  await stage.line(line).first().click();
+  await stage.clickLine(line);
   await stage.page.keyboard.press("Home");
   const text = (await stage.line(line).first().innerText()).trimStart();
   for (let at = 0; at < text.indexOf(word) + word.length; at++) {

@@ -231,32 +231,33 @@ export class Stage {
     return this.page.locator(`.tab[data-resource-name="${name}"]`);
   }
 
+  /** Puts the cursor in a line. */
+  async clickLine(line) {
+    await this.#clickUntil(`the cursor is in "${line}"`, line, "", ({ row, cursor }) => isWithin(cursor.y, row.top, row.bottom));
+  }
+
   /** Puts the cursor in a word of a line. */
   async clickWord(line, word) {
-    await this.line(line).first().click({ position: await this.#middleOf(line, word) });
+    await this.#clickUntil(`the cursor is in "${word}" of "${line}"`, line, word, ({ row, word: place, cursor }) =>
+      isWithin(cursor.y, row.top, row.bottom) && isWithin(cursor.x, place.left, place.right));
   }
 
   /** Puts the mouse over a word of a line. */
   async hoverWord(line, word) {
-    await this.line(line).first().hover({ position: await this.#middleOf(line, word) });
+    await this.line(line).first().hover({ position: middleOf(await this.#placesIn(line, word)) });
   }
 
-  /** Where the middle of a word is in its line, which may not have colours yet: it is then one element, however many words it has. */
-  async #middleOf(line, word) {
-    return this.line(line).first().evaluate((row, sought) => {
-      const texts = document.createTreeWalker(row, NodeFilter.SHOW_TEXT);
-      const range = document.createRange();
-      while (texts.nextNode()) {
-        const at = texts.currentNode.data.indexOf(sought);
-        if (at >= 0) {
-          range.setStart(texts.currentNode, at);
-          range.setEnd(texts.currentNode, at + sought.length);
-          const [place, origin] = [range.getBoundingClientRect(), row.getBoundingClientRect()];
-          return { x: place.x + place.width / 2 - origin.x, y: place.y + place.height / 2 - origin.y };
-        }
-      }
-      throw new Error(`"${row.textContent}" has no "${sought}" of one colour`);
-    }, word);
+  /** Clicks a line until the cursor is where it should be: a code lens that appears moves the line from under the mouse. */
+  async #clickUntil(what, line, word, check) {
+    await until(what, async () => {
+      const position = word && middleOf(await this.#placesIn(line, word));
+      await this.line(line).first().click(position ? { position } : {});
+      return check(await this.#placesIn(line, word));
+    });
+  }
+
+  #placesIn(line, word) {
+    return this.line(line).first().evaluate(placesIn, word);
   }
 
   /** The visible text of the editor, with single spaces. */
@@ -447,6 +448,45 @@ export function program(name) {
 /** Collapses white space; the editor inserts non-breaking spaces for its layout. */
 export function spaced(text) {
   return text.replace(/[\u00a0\s]+/g, " ");
+}
+
+/**
+ * Where a row of the editor, a word of it and the middle of the cursor are in the window, once all is drawn. Runs in the page. A
+ * row that has no colours yet is one element, however many words it has.
+ */
+async function placesIn(row, word) {
+  const frame = () => new Promise((resolve) => requestAnimationFrame(resolve));
+  await frame();
+  await frame();
+  const boxOf = (part) => {
+    const { left, right, top, bottom } = part.getBoundingClientRect();
+    return { left, right, top, bottom };
+  };
+  const texts = document.createTreeWalker(row, NodeFilter.SHOW_TEXT);
+  const range = document.createRange();
+  let at = -1;
+  while (at < 0 && texts.nextNode()) {
+    at = texts.currentNode.data.indexOf(word);
+    if (at >= 0) {
+      range.setStart(texts.currentNode, at);
+      range.setEnd(texts.currentNode, at + word.length);
+    }
+  }
+  if (at < 0 && word) {
+    throw new Error(`"${row.textContent}" has no "${word}" of one colour`);
+  }
+  const cursor = row.closest(".monaco-editor").querySelector(".cursor");
+  const { left, right, top, bottom } = cursor ? boxOf(cursor) : {};
+  return { row: boxOf(row), word: boxOf(range), cursor: { x: (left + right) / 2, y: (top + bottom) / 2 } };
+}
+
+/** The middle of a word in its row. */
+function middleOf({ row, word }) {
+  return { x: (word.left + word.right) / 2 - row.left, y: (word.top + word.bottom) / 2 - row.top };
+}
+
+function isWithin(value, least, most) {
+  return least <= value && value <= most;
 }
 
 /** Waits until a check is truthy and returns its value; `what` describes it in the error. */

@@ -37,7 +37,7 @@ test("problems come while typing, and completion", async () => {
 });
 
 test("the preview shows the path and follows the text", async () => {
-  await stage.line("movement lap").first().click();
+  await stage.clickLine("movement lap");
   await stage.page.keyboard.press("Control+K");
   await stage.page.keyboard.press("v");
   const frame = await stage.webview("main.preview");

@@ -97,7 +97,7 @@ test("hints after each action show its duration and where it ends", async () => 
 });
 
 test("completion offers what can come next", async () => {
-  await stage.line("move 50 centimeters").first().click();
+  await stage.clickLine("move 50 centimeters");
   await stage.page.keyboard.press("End");
   await stage.page.keyboard.press("Enter");
   await stage.type("tu");
@@ -118,7 +118,7 @@ const LATE = [
 ];
 for (const { before, letter, offered, after } of LATE) {
   test(`while the server is late, Enter ends the line behind ${before}${letter}${after}`, async () => {
-    await stage.line("turn").first().click();
+    await stage.clickLine("turn");
     await stage.page.keyboard.press("End");
     await stage.page.keyboard.press("Enter");
     await stage.type(before);
@@ -194,7 +194,7 @@ test("after an edit, the result is marked as one of the program before", async (
   const frame = await stage.webview("main.preview");
   const since = frame.locator('[data-part="result"]', { hasText: "The program has changed since." });
   assert.equal(await since.count(), 0);
-  await stage.line("turn left").first().click();
+  await stage.clickLine("turn left");
   await stage.page.keyboard.press("End");
   await stage.type(" 45");
   await since.waitFor();
@@ -205,7 +205,7 @@ test("after an edit, the result is marked as one of the program before", async (
   await stage.acceptFile("yard.svg");
   await stage.toast("Path exported: yard.svg");
   assert.doesNotMatch(stage.read("yard.svg"), /driven/);
-  await stage.line("turn left 45").first().click();
+  await stage.clickLine("turn left 45");
   await stage.page.keyboard.press("End");
   for (let key = 0; key < 3; key += 1) await stage.page.keyboard.press("Backspace");
   await since.waitFor({ state: "detached" });
