@@ -219,7 +219,7 @@ def in_editors() -> list[Job]:
     ]
 
 
-# What begins last: after each part that keeps both processors of a small machine busy, one that mostly waits.
+# What begins last: parts that keep both processors of a small machine busy, each beside one that mostly waits.
 LATE = (
     *("python", "vscode"),
     *("typing", "rust"),
