@@ -156,6 +156,21 @@ impl ClientFeatures {
             pages: client.pointer("/experimental/pages").and_then(Value::as_str).map(str::to_owned),
         }
     }
+
+    /// Corrects what a client, by its name, announces wrongly.
+    pub(crate) fn correct(&mut self, client: &str) {
+        match client {
+            // It shows documents without announcing it.
+            "helix" => self.show_document = true,
+            // Neovim (up to 0.12) pulls the diagnostics of an open document only after edits in that document; those
+            // about what another file says would never change.
+            "Neovim" => {
+                self.pull_diagnostics = false;
+                self.refreshes_diagnostics = false;
+            }
+            _ => {}
+        }
+    }
 }
 
 #[cfg(test)]
@@ -274,5 +289,22 @@ mod tests {
         client["textDocument"]["diagnostic"] = pulled;
         let diagnostic_tags = vec![DiagnosticTag::UNNECESSARY, DiagnosticTag::DEPRECATED];
         assert_eq!(features(client), ClientFeatures { pull_diagnostics: true, diagnostic_tags, ..all });
+    }
+
+    #[test]
+    fn what_some_clients_announce_is_corrected() {
+        let corrected = |name: &str, mut features: ClientFeatures| {
+            features.correct(name);
+            features
+        };
+        let pulls = ClientFeatures {
+            pull_diagnostics: true,
+            refreshes_diagnostics: true,
+            ..ClientFeatures::default()
+        };
+        assert_eq!(corrected("Neovim", pulls.clone()), ClientFeatures::default());
+        assert_eq!(corrected("Visual Studio Code", pulls.clone()), pulls);
+        let shows = ClientFeatures { show_document: true, ..ClientFeatures::default() };
+        assert_eq!(corrected("helix", ClientFeatures::default()), shows);
     }
 }

@@ -24,8 +24,9 @@ impl LanguageServer for LifeCycle {
     async fn initialize(&self, params: InitializeParams) -> Result<InitializeResult> {
         let server = &self.server;
         let mut features = ClientFeatures::new(&params.capabilities);
-        // Helix shows documents without announcing it.
-        features.show_document |= params.client_info.as_ref().is_some_and(|client| client.name == "helix");
+        if let Some(client) = &params.client_info {
+            features.correct(&client.name);
+        }
         let capabilities = self.table.capabilities(&features);
         let mut state = server.state();
         state.view.client = Arc::new(features);
