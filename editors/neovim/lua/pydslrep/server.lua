@@ -75,6 +75,36 @@ local function root(buffer)
   return vim.fs.root(buffer, { 'pydslrep.toml', '.git' })
 end
 
+---@param client vim.lsp.Client
+---@return boolean
+local function is_stopped(client)
+  if vim.fn.has('nvim-0.11') == 1 then
+    return client:is_stopped()
+  end
+  return client.is_stopped()
+end
+
+--- Whether a running client is the one for a buffer. One without a folder keeps the folder of its buffers when that
+--- becomes a project: another server would know neither their unsaved texts nor, before they are saved, the settings.
+---@param client vim.lsp.Client
+---@param settings vim.lsp.ClientConfig Of the buffer.
+---@return boolean
+local function serves(client, settings)
+  if client.name ~= M.NAME or is_stopped(client) then
+    return false
+  end
+  local folder = settings.root_dir
+  if not folder or client.root_dir then
+    local function is_same(other)
+      return other.name == folder
+    end
+    return folder == client.root_dir or vim.iter(client.workspace_folders or {}):any(is_same)
+  end
+  return vim.iter(pairs(client.attached_buffers)):any(function(buffer)
+    return vim.startswith(vim.api.nvim_buf_get_name(buffer), folder .. '/')
+  end)
+end
+
 --- The configuration for `vim.lsp.config`.
 ---@return vim.lsp.Config
 function M.config()
@@ -89,6 +119,7 @@ function M.config()
         use(root(buffer))
       end
     end,
+    reuse_client = serves,
     init_options = settings,
     settings = settings and { pydslrep = settings },
     capabilities = { experimental = { commands = { commands = { 'pydslrep.showReferences' } } } },
@@ -117,7 +148,7 @@ local function start(buffer)
     capabilities = vim.tbl_deep_extend('force', vim.lsp.protocol.make_client_capabilities(), settings.capabilities),
     handlers = settings.handlers,
     on_exit = settings.on_exit,
-  }, { bufnr = buffer })
+  }, { bufnr = buffer, reuse_client = settings.reuse_client })
 end
 
 --- Starts the server for all open and future programs, settings and scenes.
