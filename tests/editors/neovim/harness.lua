@@ -73,11 +73,11 @@ function M.go_to(pattern)
   assert(vim.fn.search(pattern, 'c') > 0, pattern)
 end
 
---- The ranges and codes of the errors in the program.
-function M.errors()
+--- The ranges and codes of the errors in a program, by default the current one.
+function M.errors(buffer)
   return vim.tbl_map(function(found)
     return { found.lnum, found.col, found.end_lnum, found.end_col, found.code }
-  end, vim.diagnostic.get(0, { severity = vim.diagnostic.severity.ERROR }))
+  end, vim.diagnostic.get(buffer or 0, { severity = vim.diagnostic.severity.ERROR }))
 end
 
 --- Requests code actions by key, applies the one whose title contains `wanted`, and returns all titles.

@@ -225,13 +225,25 @@ local function files_that_move()
   vim.fn.mkdir('lib')
   vim.uv.fs_rename('parts.pyr', 'lib/parts.pyr')
   client():notify('workspace/didRenameFiles', moved)
-  becomes('and is resolved there', {}, errors)
   vim.cmd.write()
+end
+
+local function two_windows()
+  local program = vim.api.nvim_get_current_buf()
+  local function problem() return (errors(program)[1] or {})[5] end
+  vim.cmd.split('lib/parts.pyr')
+  go_to('a with')
+  vim.api.nvim_input('rc')
+  becomes('an edit breaks the program that imports the file that has moved', 'unresolved-reference', problem)
+  vim.api.nvim_input('u')
+  becomes('until it is undone', nil, problem)
+  vim.cmd.close()
 end
 
 local function settings_file()
   write('pydslrep.toml', '[sevrity]\nwheel-count = "off"\n')
   open('pydslrep.toml')
+  check('the server of the programs checks their settings', #vim.lsp.get_clients() == 1, #vim.lsp.get_clients())
   local function codes()
     return vim.tbl_map(function(found) return found.code end, vim.diagnostic.get(0))
   end
@@ -360,5 +372,6 @@ end
 
 harness.run({
   diagnostics, no_script_of_a_broken_program, completion, reading, beside_the_program, while_typing,
-  rewriting, renaming, formatting, files_that_move, settings_file, quick_fix, script, other_texts, life,
+  rewriting, renaming, formatting, files_that_move, two_windows,
+  settings_file, quick_fix, script, other_texts, life,
 })
