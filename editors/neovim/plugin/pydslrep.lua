@@ -43,6 +43,7 @@ end
 on_server('LspAttach', function(event)
   require('pydslrep.lenses').register()
   if vim.bo[event.buf].filetype == 'pydslrep' then
+    require('pydslrep.cursor').attached(event.buf)
     require('pydslrep.folding').attached(event.buf)
   end
 end)

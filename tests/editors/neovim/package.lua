@@ -149,6 +149,26 @@ local function command()
   check('and surplus arguments', more)
 end
 
+local function while_typing()
+  open_program('typed.pyr', PROGRAM)
+  local function codes()
+    return vim.tbl_map(function(found) return found.code end, vim.diagnostic.get(0, { severity = 1 }))
+  end
+  local function type_into(keys, expected)
+    vim.api.nvim_input(keys)
+    wait(function() return text():find(expected, 1, true) end)
+    -- Neovim sends what was typed before it sends a request.
+    local params = { textDocument = { uri = vim.uri_from_bufnr(0) } }
+    harness.client():request_sync('textDocument/foldingRange', params, 60000, 0)
+  end
+  go_to('wheelR }')
+  type_into('ciw', '{ wheelL  }')
+  type_into('w', '{ wheelL w }')
+  check('the problem of a name that is being typed is not shown', #codes() == 0, codes())
+  vim.api.nvim_input('<Esc>j')
+  becomes('it is shown when the line is left', { 'unresolved-reference' }, codes)
+end
+
 local function options()
   local function notes()
     local codes = vim.tbl_map(function(found) return found.code end, vim.diagnostic.get(0))
@@ -387,6 +407,6 @@ local function help()
 end
 
 harness.run({
-  before_the_server, file_type, indentation, command, options, generate, preview, live_preview, run, failed_run, stop,
-  lenses, help, life,
+  before_the_server, file_type, indentation, command, while_typing, options, generate, preview, live_preview, run,
+  failed_run, stop, lenses, help, life,
 })
