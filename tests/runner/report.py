@@ -11,6 +11,9 @@ from schedule import Outcome
 TAIL = 40
 """How many lines of a failed job's output are printed."""
 
+VERDICT = re.compile(r"✔|✖|\u2139|==|(?:[\w-]+: )?(?:ok  |FAIL)|(?:not )?ok ")
+"""The begin of a line about one test, or about all of them."""
+
 
 def line(outcome: Outcome) -> str:
     """One line about a job."""
@@ -83,15 +86,18 @@ def verdicts(outcome: Outcome) -> list[str]:
 
 
 def reason(outcome: Outcome, name: str) -> str:
-    """The first line after a failed test that says why."""
-    lines = COLOURS.sub(
-        "", outcome.log.read_text(encoding="utf-8", errors="replace")
-    ).splitlines()
+    """What a failed test says, or the line that follows it. Node lists all tests first, and the reasons afterwards."""
+    output = outcome.log.read_text(encoding="utf-8", errors="replace")
+    lines = [line.strip() for line in COLOURS.sub("", output).splitlines()]
+    lines = [line for line in lines if line]
     last = name.rpartition(": ")[2]
-    for number, text in enumerate(lines):
-        if last in text and re.search(r"✖|FAIL|not ok", text):
-            following = [
-                one.strip() for one in lines[number + 1 : number + 6] if one.strip()
-            ]
-            return following[0] if following else text.strip()
-    return "see the output"
+    failed = [
+        number
+        for number, text in enumerate(lines)
+        if last in text and re.match(r"✖|(?:[\w-]+: )?FAIL|not ok", text)
+    ]
+    for number in failed:
+        following = lines[number + 1 : number + 2]
+        if following and not VERDICT.match(following[0]):
+            return following[0]
+    return lines[failed[0]] if failed else "see the output"

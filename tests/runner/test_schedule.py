@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -71,6 +72,26 @@ def test_an_editor_tries_once_more_and_says_so(tmp_path: Path) -> None:
     assert "FAILED: rust: folds\n    test -e once" in report.end(
         [outcome], 1.0, tmp_path
     )
+
+
+@pytest.mark.parametrize(
+    ("output", "why"),
+    [
+        (
+            "✖ folds (9 ms)\n✔ opens (2 ms)\n✖ folds (9 ms)\n  Error: late\n",
+            "Error: late",
+        ),
+        ("FAIL folds: { 1 }\nok   opens\n", "FAIL folds: { 1 }"),
+        ("vscode: FAIL folds at 30 ms\nvscode:      line 3\n", "vscode:      line 3"),
+        ("✔ folds\n", "see the output"),
+    ],
+)
+def test_the_reason_is_not_a_line_about_another_test(
+    tmp_path: Path, output: str, why: str
+) -> None:
+    job = Job("editor", (f"printf %s {shlex.quote(output)}",))
+    (outcome,) = run(tmp_path, job)
+    assert report.reason(outcome, "a.test.mjs: folds") == why
 
 
 def test_everything_that_a_job_needs_exists() -> None:

@@ -138,8 +138,8 @@ test("F5 runs the environment at the cursor", async () => {
 });
 
 test("if several environments use what is at the cursor, a list asks which", async () => {
-  await stage.page.locator('.tab[data-resource-name="two.pyr"]').click();
-  await stage.page.keyboard.press("Control+Home");
+  await stage.tab("two.pyr").click();
+  await stage.toBeginning();
   await stage.page.keyboard.press("Control+F5");
   const rows = stage.page.locator(".quick-input-widget .monaco-list-row");
   await until("both are offered", async () => (await rows.allInnerTexts()).map((text) => text.trim()).join() === "yard,hall");

@@ -231,6 +231,14 @@ export class Stage {
     return this.page.locator(`.tab[data-resource-name="${name}"]`);
   }
 
+  /** Puts the cursor at the beginning of the file. An editor whose tab was clicked gets the keys only some time later. */
+  async toBeginning() {
+    await until("the cursor is at the beginning", async () => {
+      await this.page.keyboard.press("Control+Home");
+      return /Ln 1, Col 1\b/.test(await this.page.locator(".statusbar").innerText());
+    });
+  }
+
   /** Puts the cursor in a line. */
   async clickLine(line) {
     await this.#clickUntil(`the cursor is in "${line}"`, line, "", ({ row, cursor }) => isWithin(cursor.y, row.top, row.bottom));
