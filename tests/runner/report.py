@@ -96,7 +96,7 @@ def reason(outcome: Outcome, name: str) -> str:
         for number, text in enumerate(lines)
         if last in text and re.match(r"✖|(?:[\w-]+: )?FAIL|not ok", text)
     ]
-    for number in failed:
+    for number in reversed(failed):
         following = lines[number + 1 : number + 2]
         if following and not VERDICT.match(following[0]):
             return following[0]

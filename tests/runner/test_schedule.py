@@ -78,7 +78,7 @@ def test_an_editor_tries_once_more_and_says_so(tmp_path: Path) -> None:
     ("output", "why"),
     [
         (
-            "✖ folds (9 ms)\n✔ opens (2 ms)\n✖ folds (9 ms)\n  Error: late\n",
+            "✖ folds (9 ms)\nscreenshot: folds.png\n✖ folds (9 ms)\n  Error: late\n",
             "Error: late",
         ),
         ("FAIL folds: { 1 }\nok   opens\n", "FAIL folds: { 1 }"),

@@ -265,7 +265,7 @@ export class Stage {
   }
 
   #placesIn(line, word) {
-    return this.line(line).first().evaluate(placesIn, word);
+    return until(`"${line}" is drawn`, () => this.line(line).first().evaluate(placesIn, word));
   }
 
   /** The visible text of the editor, with single spaces. */
@@ -460,12 +460,15 @@ export function spaced(text) {
 
 /**
  * Where a row of the editor, a word of it and the middle of the cursor are in the window, once all is drawn. Runs in the page. A
- * row that has no colours yet is one element, however many words it has.
+ * row that has no colours yet is one element, however many words it has. Null if the editor has replaced the row meanwhile.
  */
 async function placesIn(row, word) {
   const frame = () => new Promise((resolve) => requestAnimationFrame(resolve));
   await frame();
   await frame();
+  if (!row.isConnected) {
+    return null;
+  }
   const boxOf = (part) => {
     const { left, right, top, bottom } = part.getBoundingClientRect();
     return { left, right, top, bottom };
