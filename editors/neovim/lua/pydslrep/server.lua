@@ -84,8 +84,8 @@ local function is_stopped(client)
   return client.is_stopped()
 end
 
---- Whether a running client is the one for a buffer. One without a folder keeps the folder of its buffers when that
---- becomes a project: another server would know neither their unsaved texts nor, before they are saved, the settings.
+--- Whether a buffer uses a running client. A client without a folder keeps the folder of its buffers when that becomes
+--- a project: a second server would not know the unsaved texts of these buffers, nor the first one unsaved settings.
 ---@param client vim.lsp.Client
 ---@param settings vim.lsp.ClientConfig Of the buffer.
 ---@return boolean
@@ -101,7 +101,7 @@ local function serves(client, settings)
     return folder == client.root_dir or vim.iter(client.workspace_folders or {}):any(is_same)
   end
   return vim.iter(pairs(client.attached_buffers)):any(function(buffer)
-    return vim.startswith(vim.api.nvim_buf_get_name(buffer), folder .. '/')
+    return vim.startswith(vim.fs.normalize(vim.api.nvim_buf_get_name(buffer)), folder .. '/')
   end)
 end
 
