@@ -12,7 +12,7 @@ TAIL = 40
 """How many lines of a failed job's output are printed."""
 
 VERDICT = re.compile(r"✔|✖|\u2139|==|(?:[\w-]+: )?(?:ok  |FAIL)|(?:not )?ok ")
-"""The begin of a line about one test, or about all of them."""
+"""The beginning of a line about one test, or about all of them."""
 
 
 def line(outcome: Outcome) -> str:
