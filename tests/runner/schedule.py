@@ -59,21 +59,26 @@ class Schedule:
     def finish(self) -> list[Outcome]:
         """Runs everything, and returns what came of it in the order in which it ended. An interrupt ends what runs."""
         with ThreadPoolExecutor(max_workers=len(self.left) or 1) as pool:
-            while self.left or self.running:
-                self.skip()
-                while job := self.next():
-                    self.left.remove(job)
-                    self.running[pool.submit(self.run, job)] = job
-                if self.running:
-                    try:
-                        done, _ = wait(self.running, return_when=FIRST_COMPLETED)
-                    except KeyboardInterrupt:
-                        Commands.interrupt()
-                        raise
-                    for future in done:
-                        del self.running[future]
-                        self.end(future.result())
+            try:
+                self.run_all(pool)
+            except KeyboardInterrupt:
+                # Here, because the pool waits for what runs.
+                Commands.interrupt()
+                raise
         return list(self.outcomes.values())
+
+    def run_all(self, pool: ThreadPoolExecutor) -> None:
+        """Runs what is left."""
+        while self.left or self.running:
+            self.skip()
+            while job := self.next():
+                self.left.remove(job)
+                self.running[pool.submit(self.run, job)] = job
+            if self.running:
+                done, _ = wait(self.running, return_when=FIRST_COMPLETED)
+                for future in done:
+                    del self.running[future]
+                    self.end(future.result())
 
     def next(self) -> Job | None:
         """The job that begins now: the first of which everything is there, as soon as there is a place for it.
@@ -142,6 +147,9 @@ class Commands:
                 start_new_session=True,
             )
             self.groups.add(process.pid)
+            if self.interrupted:
+                # It came too late for `interrupt` to know of it.
+                self.terminate(process.pid)
             watch = threading.Timer(self.limit, self.end, (process.pid,))
             watch.start()
             # Unlike `wait`, it says how much processor time was spent.
@@ -164,8 +172,13 @@ class Commands:
         """Ends all commands, and lets no other begin."""
         cls.interrupted = True
         for group in list(cls.groups):
-            with suppress(ProcessLookupError):
-                os.killpg(group, signal.SIGTERM)
+            cls.terminate(group)
+
+    @staticmethod
+    def terminate(group: int) -> None:
+        """Asks the processes of a command to end."""
+        with suppress(ProcessLookupError):
+            os.killpg(group, signal.SIGTERM)
 
     def all(self, lines: Iterable[str]) -> bool:
         """Runs commands, whatever fails before; returns whether all succeeded."""

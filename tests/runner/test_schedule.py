@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import shlex
+import subprocess
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import Any
 
 import jobs
 import pytest
@@ -128,6 +130,38 @@ def test_an_interrupt_ends_what_runs_and_what_follows(
         Commands.interrupt()
         assert not outcome.result().succeeded
     assert not (tmp_path / "next").exists()
+
+
+def test_what_begins_during_an_interrupt_is_ended(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(Commands, "interrupted", False)
+    start = subprocess.Popen
+
+    def interrupted(*arguments: Any, **options: Any) -> subprocess.Popen[bytes]:
+        process = start(*arguments, **options)
+        Commands.interrupt()
+        return process
+
+    monkeypatch.setattr(subprocess, "Popen", interrupted)
+    job = Job("slow", ("sleep 1000",))
+    assert not runner(tmp_path, tmp_path, {"PATH": "/usr/bin:/bin"})(job).succeeded
+
+
+def test_an_interrupt_at_any_point_ends_what_runs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(Commands, "interrupted", False)
+
+    def interrupt(_: Outcome) -> None:
+        raise KeyboardInterrupt
+
+    quick, slow = Job("quick", ("true",)), Job("slow", ("sleep 1000",))
+    schedule = Schedule(
+        [slow, quick], runner(tmp_path, tmp_path, {"PATH": "/usr/bin:/bin"}), interrupt
+    )
+    with pytest.raises(KeyboardInterrupt):
+        schedule.finish()
 
 
 def test_processor_time_is_told(tmp_path: Path) -> None:
