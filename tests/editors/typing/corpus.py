@@ -18,14 +18,12 @@ SIZE = 12
 TRIED = 150
 # A line at the third depth: in a block of a block.
 NESTED = "\n" + 6 * " "
-# The programs for continuous integration: table 2, an example, nested ones, similar names, one as the article prints it.
+# The programs of the test command: table 2, comments, conditions, nested blocks, similar names, one as the article prints it.
 FEW = (
     "table2_two_wheels",
-    "mecanum",
     "comments",
     "07-patrol",
-    "nested_013",
-    "names_00",
+    "nested_027",
     "names_00_tab",
     "table6_sensors_printed",
 )

@@ -22,8 +22,6 @@ from keystrokes import Stroke, strokes
 from session import ROOT, open_session
 
 PACES = (30, 70, 150)
-# Without `--all`, a few programs are typed at the first pace, and the first one also at the second.
-FEW_PACES = (30, 70)
 # How long saving a file may take, seconds: the editor may have keys to handle before.
 TIMEOUT = 30.0
 SIGNS = {
@@ -112,9 +110,9 @@ def tasks(options: argparse.Namespace) -> Iterator[Task]:
 
 
 def paces(program: Program, number: int, is_all: bool) -> tuple[int, ...]:
-    """The paces for a program. Those that differ only by chance take turns."""
+    """The paces for a program. Those that differ only by chance take turns, and a few are typed as fast as possible."""
     if not is_all:
-        return FEW_PACES if program.name == FEW[0] else FEW_PACES[:1]
+        return PACES[:1]
     return (PACES[number % len(PACES)],) if program.is_generated else PACES
 
 
