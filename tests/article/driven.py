@@ -103,17 +103,6 @@ def run(command: str, table: Table, folder: pathlib.Path) -> Result:
     return Result(figures, picture, found, folder / "trace.jsonl")
 
 
-def runs_table(results: list[Result]) -> str:
-    """The table of the page."""
-    return "\n".join(
-        [
-            "| table | robot | planned end | driven end | apart | planned time | simulated time |",
-            "|---|---|---|---|---|---|---|",
-            *(row(table, found) for table, found in zip(TABLES, results, strict=True)),
-        ]
-    )
-
-
 def row(table: Table, result: Result) -> str:
     """A row of the table."""
     figures = result.figures
