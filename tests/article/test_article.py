@@ -47,14 +47,19 @@ def expect_on_page(name: str, text: str) -> None:
         assert found == f"\n{text}\n\n", "run it with UPDATE_EXPECT=1"
 
 
-def expect_row(beginning: str, row: str) -> None:
-    """The page has a row of a table that begins like that, and is alike."""
+def expect_row(table: Table, row: str) -> None:
+    """The page has a row for a program, which is alike."""
     page = PAGE.read_text(encoding="utf-8")
-    [found] = [line for line in page.splitlines() if line.startswith(beginning)]
+    [found] = [line for line in page.splitlines() if line.startswith(beginning(table))]
     if IS_UPDATE:
         PAGE.write_text(page.replace(found, row), encoding="utf-8")
     else:
         assert_alike(found, row)
+
+
+def beginning(table: Table) -> str:
+    """The cells of a program's row that no run changes."""
+    return f"| {table.number} | {table.what} | "
 
 
 def expect_picture(path: pathlib.Path, picture: str) -> None:
@@ -136,10 +141,31 @@ def test_statistics(table: str) -> None:
     expect_on_page(table, getattr(evaluation, f"{table}_table")())
 
 
+def test_the_page_has_a_row_for_each_program() -> None:
+    _, rest = PAGE.read_text(encoding="utf-8").split(
+        "<!-- runs: made by tests/article -->\n\n"
+    )
+    table, _ = rest.split("\n\n<!-- end of runs -->")
+    header, line, *rows = table.splitlines()
+    names = [
+        "table",
+        "robot",
+        "planned end",
+        "driven end",
+        "apart",
+        "planned time",
+        "simulated time",
+    ]
+    assert header == f"| {' | '.join(names)} |"
+    assert line == "|" + "---|" * len(names)
+    for found, program in zip(rows, TABLES, strict=True):
+        assert found.startswith(beginning(program))
+
+
 @pytest.mark.parametrize(
     "table",
     [
-        # It explores for half a minute of computing; other tests explore smaller areas.
+        # Its exploration takes half a minute to compute; other tests explore smaller areas.
         pytest.param(table, marks=pytest.mark.long if table.number == 7 else ())
         for table in TABLES
     ],
@@ -151,7 +177,7 @@ def test_a_program_drives(command: str, tmp_path: pathlib.Path, table: Table) ->
         check_map(result.map, result.trace)
     if table.picture:
         expect_picture(PICTURES / table.picture, result.picture)
-    expect_row(f"| {table.number} | {table.what} |", row(table, result))
+    expect_row(table, row(table, result))
 
 
 def serve(program: pathlib.Path, ports: Sequence[int]) -> str:
