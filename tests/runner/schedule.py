@@ -62,7 +62,7 @@ class Schedule:
             try:
                 self.run_all(pool)
             except KeyboardInterrupt:
-                # Here, because the pool waits for what runs.
+                # Before the pool is left, which waits for what runs.
                 Commands.interrupt()
                 raise
         return list(self.outcomes.values())

@@ -110,7 +110,7 @@ def tasks(options: argparse.Namespace) -> Iterator[Task]:
 
 
 def paces(program: Program, number: int, is_all: bool) -> tuple[int, ...]:
-    """The paces for a program. Those that differ only by chance take turns, and a few are typed as fast as possible."""
+    """The paces for a program. Those that differ only by chance take turns; the few of the test command are typed at the fastest."""
     if not is_all:
         return PACES[:1]
     return (PACES[number % len(PACES)],) if program.is_generated else PACES
