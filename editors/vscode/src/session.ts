@@ -19,9 +19,19 @@ import { launch } from "./launch";
 import { showError } from "./notifications";
 import { Runs } from "./run";
 
+/** A client that only writes its failures to the output while it is silent. */
+class Client extends LanguageClient {
+  /** Whether others tell the failures: those to start are reported with what to do, and those of a replaced client concern nobody. */
+  isSilent = true;
+
+  override error(message: string, data?: unknown, show?: boolean | "force"): void {
+    super.error(message, data, this.isSilent ? false : show);
+  }
+}
+
 export class Session implements LanguageServer, vscode.Disposable {
   /** The connection to the server; undefined if no server was found. */
-  client: LanguageClient | undefined;
+  client: Client | undefined;
   /** The server that was found. */
   server: Executable | undefined;
   state: ServerState = "starting";
@@ -64,6 +74,7 @@ export class Session implements LanguageServer, vscode.Disposable {
     this.client = client;
     try {
       await client.start();
+      client.isSilent = this.client !== client;
     } catch (error) {
       if (this.client === client) {
         this.setState("stopped");
@@ -72,7 +83,7 @@ export class Session implements LanguageServer, vscode.Disposable {
     }
   }
 
-  private createClient(server: Executable): LanguageClient {
+  private createClient(server: Executable): Client {
     const folder = vscode.workspace.workspaceFolders?.[0]?.uri.fsPath;
     const crashes = new CrashCounter();
     const closed = (): CloseHandlerResult => {
@@ -93,8 +104,10 @@ export class Session implements LanguageServer, vscode.Disposable {
       }
       return process;
     };
-    const client = new LanguageClient("pydslrep", "PyDSLRep", start, {
+    const client = new Client("pydslrep", "PyDSLRep", start, {
       ...clientOptions(this),
+      // Without a handler, the library shows the error itself.
+      initializationFailedHandler: () => false,
       // Writing to a dead server fails before its exit is noticed; `closed` handles the exit.
       errorHandler: { error: () => ({ action: ErrorAction.Continue, handled: true }), closed },
     });
@@ -113,6 +126,9 @@ export class Session implements LanguageServer, vscode.Disposable {
     const { client, process } = this;
     this.client = undefined;
     this.process = undefined;
+    if (client) {
+      client.isSilent = true;
+    }
     if (client?.state === State.Starting) {
       // It may never respond, and the next step of the queue waits for it.
       process?.kill();
