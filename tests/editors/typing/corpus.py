@@ -24,13 +24,15 @@ FEW = (
     "comments",
     "07-patrol",
     "nested_027",
-    "names_00_tab",
+    "names_few_tab",
     "table6_sensors_printed",
 )
 # Its syntax errors leave it without a layout.
 WITHOUT_LAYOUT = ("11-recovery",)
-# How many programs have similar names.
+# How many programs have similar names, and how many letters these begin with; in the test command, fewer.
 SIMILAR = 6
+LETTERS = 6
+FEW_LETTERS = 2
 STEP = 2
 
 
@@ -75,6 +77,7 @@ def programs() -> list[Program]:
     ]
     texts = {file.stem: file.read_text() for file in files}
     texts |= {f"names_{seed:02}": similar_names(seed) for seed in range(SIMILAR)}
+    texts["names_few"] = similar_names(0, FEW_LETTERS)
     printed = [
         Program(f"{file.stem}_printed", file.read_text(), is_printed=True)
         for file in sorted((ROOT / "tests/paper").glob("*.pyr"))
@@ -99,9 +102,9 @@ def other_files() -> dict[str, str]:
     }
 
 
-def similar_names(seed: int) -> str:
+def similar_names(seed: int, count: int = LETTERS) -> str:
     """A program with names that begin like others, in lists on one line and over several."""
-    letters = [chr(ord("a") + (seed * 4 + place) % 26) for place in range(6)]
+    letters = [chr(ord("a") + (seed * 4 + place) % 26) for place in range(count)]
     sensors = [name for letter in letters for name in _family(letter, letters[0])]
     names = _family(letters[0], letters[1])
     rotated = [*names[seed % 4 :], *names[: seed % 4]]
@@ -111,11 +114,12 @@ def similar_names(seed: int) -> str:
         f"robot {names[1]} type fw with port 23000 has {{ {' '.join(rotated)} }} wheels"
     )
     lines.append(f"{robot} with sensors {{ {', '.join(reversed(sensors))} }}")
-    for name in names:
+    moved = names[:count]
+    for name in moved:
         until = "{ " + ", ".join(rotated) + " }"
         action = f"turn left until {until}"
         lines.append(f"movement {name} of {names[1]} {{ {action} move 2 meters }}")
-    moves = " ".join(rotated[place % 4] for place in range(26))
+    moves = " ".join(moved[(seed + place) % len(moved)] for place in range(26))
     lines.append(
         f"environment {names[0]} has {{ {names[1]} }} robots with {{ {moves} }} moves"
     )
