@@ -236,14 +236,14 @@ def every() -> list[Job]:
     )
 
 
-def chosen(names: list[str], editors: bool) -> list[Job]:
+def chosen(names: list[str], editors: bool, long: bool) -> list[Job]:
     """The jobs of a run, with what they need."""
     table = {job.name: job for job in every()}
     wanted = set(names) or {job.name for job in checks()} | (
         {job.name for job in in_editors()} if editors else set()
     )
-    # The build for a browser says more than its check.
-    if editors and not names:
+    # With editors, the build for a browser says more; without, it would be a sixth of the processor time.
+    if not names and (editors or not long):
         wanted.discard("wasm")
     needed = list(wanted)
     while needed:

@@ -35,7 +35,7 @@ def main() -> None:
     limit = 24 * LIMIT if options.long else LIMIT
     run = runner(jobs.LOGS, jobs.ROOT, variables(options.long), limit)
     schedule = Schedule(
-        jobs.chosen(options.names, options.editors),
+        jobs.chosen(options.names, options.editors, options.long),
         run,
         lambda outcome: print(report.line(outcome), flush=True),
     )

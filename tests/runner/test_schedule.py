@@ -101,8 +101,17 @@ def test_everything_that_a_job_needs_exists() -> None:
     assert len(set(names)) == len(names)
     assert all(set(job.after) <= set(names) for job in jobs.every())
     # `run.sh documentation` prepares the editors, and does not check everything that comes before in a full run.
-    alone = [job.name for job in jobs.chosen(["documentation"], editors=False)]
-    assert alone == ["tools", "build", "editors", "documentation"]
+    alone = jobs.chosen(["documentation"], editors=False, long=False)
+    assert [job.name for job in alone] == ["tools", "build", "editors", "documentation"]
+
+
+def test_the_check_for_a_browser_runs_where_no_build_for_one_does() -> None:
+    def names(*named: str, editors: bool = False, long: bool = False) -> set[str]:
+        return {job.name for job in jobs.chosen([*named], editors, long)}
+
+    assert "wasm" in names("wasm") & names(long=True)
+    assert "web-build" in names(editors=True)
+    assert "wasm" not in names() | names(editors=True, long=True)
 
 
 def test_what_hangs_is_ended_with_its_processes_and_named(tmp_path: Path) -> None:
