@@ -40,17 +40,21 @@ def unescaped(text: str) -> str:
     return text
 
 
-def shown(command: str, path: pathlib.Path) -> list[str]:
-    """The titles of the fixes in the command's human-readable output."""
+def shown(command: str, paths: list[pathlib.Path]) -> dict[str, list[str]]:
+    """The titles of the fixes that the command offers, by the folder of each program."""
     done = subprocess.run(
-        [command, "check", "--format", "sarif", path],
+        [command, "check", "--format", "sarif", *paths],
         capture_output=True,
         encoding="utf-8",
         check=False,
     )
-    results = json.loads(done.stdout)["runs"][0]["results"]
-    titles = [fix["description"]["text"] for found in results for fix in found["fixes"]]
-    return sorted(titles)
+    titles: dict[str, list[str]] = {path.parent.name: [] for path in paths}
+    for found in json.loads(done.stdout)["runs"][0]["results"]:
+        [location] = found["locations"]
+        uri = location["physicalLocation"]["artifactLocation"]["uri"]
+        folder = pathlib.PurePosixPath(uri).parent.name
+        titles[folder] += [fix["description"]["text"] for fix in found["fixes"]]
+    return titles
 
 
 async def offered(client: LanguageClient, uri: str, text: str) -> list[str]:
@@ -85,11 +89,14 @@ async def test_command_and_editor_offer_the_same(
     editor = Editor(client, tmp_path)
     cases = programs(page)
     assert len(cases) > 5
-    for number, text in enumerate(cases):
-        path = tmp_path / f"case_{number}.pyr"
+    paths = [tmp_path / str(number) / "case.pyr" for number in range(len(cases))]
+    for path, text in zip(paths, cases, strict=True):
+        path.parent.mkdir()
         path.write_text(text, encoding="utf-8", newline="")
-        uri = editor.open(path.name, text)
-        received = shown(command, path)
+    received = shown(command, paths)
+    for path, text in zip(paths, cases, strict=True):
+        uri = editor.open(str(path.relative_to(tmp_path)), text)
+        titles = received[path.parent.name]
         assert await offered(client, uri, text) == sorted(
-            title[0].lower() + title[1:] for title in received
+            title[0].lower() + title[1:] for title in titles
         ), text

@@ -1,6 +1,6 @@
 """Random nested programs: what is driven is what is planned, and scripts pass ruff and mypy however deep their blocks are.
 
-Twenty of them run here, two hundred with `--long`.
+Twelve of them run here, two hundred with `--long`.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ ROOT = pathlib.Path(__file__).parents[2]
 TARGET = pathlib.Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
 GENERATOR = os.environ.get("RANDOM_PROGRAMS", TARGET / "debug" / "random-programs")
 
-ALL, FEW = 200, 20
+ALL, FEW = 200, 12
 LINES = 40
 # Longer ones cost time and show nothing more.
 ACTIONS, DURATION = 80, 150.0  # s
