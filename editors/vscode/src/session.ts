@@ -21,7 +21,10 @@ import { Runs } from "./run";
 
 /** A client that only writes its failures to the output while it is silent. */
 class Client extends LanguageClient {
-  /** Whether others tell the failures: those to start are reported with what to do, and those of a replaced client concern nobody. */
+  /**
+   * From the beginning until the server runs, as the session then says what to do, and again once the client is replaced, as its
+   * failures concern nobody.
+   */
   isSilent = true;
 
   override error(message: string, data?: unknown, show?: boolean | "force"): void {
@@ -74,7 +77,6 @@ export class Session implements LanguageServer, vscode.Disposable {
     this.client = client;
     try {
       await client.start();
-      client.isSilent = this.client !== client;
     } catch (error) {
       if (this.client === client) {
         this.setState("stopped");
@@ -115,6 +117,9 @@ export class Session implements LanguageServer, vscode.Disposable {
     client.onDidChangeState(({ newState }) => {
       // A client that was replaced may still change.
       if (this.client === client) {
+        if (newState === State.Running) {
+          client.isSilent = false;
+        }
         this.setState(serverState(newState));
       }
     });

@@ -14,7 +14,7 @@ const FILES = {
   other: "#!/bin/sh\nexit 1\n",
 };
 
-/** Changes the server path from one test to the next. */
+/** The window of all tests but the last. Its server path changes from one to the next. */
 let stage;
 before(async () => {
   const settings = { "pydslrep.server.path": "${workspaceFolder}/unresponsive" };
