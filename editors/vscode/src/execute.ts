@@ -9,7 +9,7 @@ import {
   type WorkDoneProgressReport,
 } from "vscode-languageclient";
 
-import { failureOf } from "./failure";
+import { type Failure, failureOf } from "./failure";
 import { type Button, showError, showWarning } from "./notifications";
 import type { EnvironmentId, Location } from "../../preview/host/protocol";
 
@@ -28,7 +28,7 @@ export async function execute(connection: Connection, command: string, environme
   try {
     return await request(connection.client, command, environment);
   } catch (error) {
-    reportFailure(connection, command, environment, error);
+    reportFailure(connection, command, environment, failureOf(error));
     return undefined;
   }
 }
@@ -43,11 +43,14 @@ export async function executeWithProgress(
   report: Report = showError,
 ): Promise<unknown> {
   const progress = new ProgressNotification(title, cancellation);
+  const { client } = connection;
   try {
-    return await request(connection.client, command, environment, (value) => progress.follow(value), cancellation.token);
+    return await request(client, command, environment, (value) => progress.follow(value), cancellation.token);
   } catch (error) {
     progress.end();
-    reportFailure(connection, command, environment, error, report);
+    // A server that is shut down may still respond, namely that the command was cancelled.
+    const isLost = connection.client !== client && !cancellation.token.isCancellationRequested;
+    reportFailure(connection, command, environment, isLost ? { kind: "disconnected" } : failureOf(error), report);
     return undefined;
   } finally {
     progress.end();
@@ -118,9 +121,8 @@ async function request(
 /** Tells the user of a failure, and what to do about it; an action that failed in a run has a location. */
 export type Report = (message: string, ...buttons: Button[]) => void;
 
-function reportFailure(connection: Connection, command: string, environment: EnvironmentId, error: unknown, report: Report = showError): void {
+function reportFailure(connection: Connection, command: string, environment: EnvironmentId, failure: Failure, report: Report = showError): void {
   const retry = (which = environment) => vscode.commands.executeCommand(command, which);
-  const failure = failureOf(error);
   switch (failure.kind) {
     case "cancelled":
       return;
