@@ -153,10 +153,17 @@ class Terminal:
             ]
             options += [f"--user-data-dir={folder}/profile", f"--screenshot={file}"]
             subprocess.run(
-                ["chromium", *options, f"file://{folder}/screen.html"],
+                [_browser(), *options, f"file://{folder}/screen.html"],
                 check=True,
                 capture_output=True,
             )
+
+
+def _browser() -> str:
+    """The program that draws pictures; it is installed if necessary."""
+    script = Path(__file__).resolve().parents[1] / "install" / "chromium.sh"
+    done = subprocess.run([script], check=True, stdout=subprocess.PIPE, text=True)
+    return done.stdout.strip()
 
 
 def spans(screen: str) -> list[list[tuple[str, dict[str, str]]]]:

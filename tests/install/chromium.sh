@@ -1,10 +1,15 @@
 #!/usr/bin/env bash
-# Prints the path of Chromium, which it installs if necessary: CHROMIUM if that is set, else the one on the PATH.
+# Prints the path of Chromium, which it installs if necessary: CHROMIUM if that is set, else the one on the PATH. Chromium without
+# windows is the first choice: the tests take half the processor time in it.
 set -euo pipefail
 source "$(dirname "$0")/lock.sh"
 
 found() {
-  if [ -n "${CHROMIUM:-}" ]; then command -v "$CHROMIUM"; else command -v chromium chromium-browser google-chrome | head -1; fi
+  if [ -n "${CHROMIUM:-}" ]; then
+    command -v "$CHROMIUM"
+  else
+    command -v chromium-headless-shell chrome-headless-shell chromium chromium-browser google-chrome | head -1
+  fi
 }
 if [ -z "$(found)" ]; then
   wait_for_turn
@@ -14,6 +19,6 @@ if [ -z "$(found)" ]; then
     echo "CHROMIUM names no program: $CHROMIUM" >&2
     exit 2
   fi
-  "$repository/tests/install/apt.sh" chromium fonts-dejavu-core
+  "$repository/tests/install/apt.sh" chromium-headless-shell fonts-dejavu-core
 fi
 found

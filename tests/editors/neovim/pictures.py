@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 import sys
 from pathlib import Path
 
@@ -96,8 +95,6 @@ def colours(session: Session) -> None:
         terminal.picture(PICTURES / "neovim-colours.png")
 
 
-if shutil.which("chromium") is None:
-    sys.exit("chromium is missing; it takes the pictures")
 with open_session("neovim") as session:
     command = Path(
         os.environ.get("PYDSLREP", str(ROOT / "target" / "debug" / "pydslrep"))

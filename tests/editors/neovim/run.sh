@@ -105,7 +105,6 @@ for name in ${*:-lint folder pasted package cloned colours older}; do
     older) [ -z "$older" ] || session older "$older" older.lua < <(lua_block vim.opt.runtimepath:append) ;;
     pictures)
       need tmux tmux
-      need chromium chromium
       NVIM="$current" PYDSLREP="$command" PYDSLREP_LSP="$server" python3 "$tests/pictures.py"
       ;;
     *) echo "unknown session: $name" >&2; false ;;
