@@ -61,19 +61,9 @@ function colours(page) {
   });
 }
 
-/** Calls `look` for every program that a theme shows, in an editor with these settings. */
-function everywhere(settings, look) {
-  const options = { files, open: names[0], settings: { ...PLAIN, ...settings }, size: { width: 1300, height: 900 } };
-  return Stage.with(options, async (stage) => {
-    for (const [theme, cssClass] of Object.entries(THEMES)) {
-      stage.set({ "workbench.colorTheme": theme });
-      await stage.page.locator(`.monaco-workbench[class*="${cssClass}"]`).waitFor();
-      for (const name of shownIn(theme)) {
-        await stage.openFile(name);
-        await look(stage, name, theme);
-      }
-    }
-  });
+/** Whether semantic tokens are shown: the extension turns them on for programs. */
+function tokens(isShown) {
+  return { "[pydslrep]": isShown ? {} : { "editor.semanticHighlighting.enabled": false } };
 }
 
 /** The colours of a program once all of it is visible and passes the check. */
@@ -85,33 +75,43 @@ function coloursOnce(stage, name, what, check) {
   });
 }
 
-test("semantic tokens change the colour of no character of the article's programs", async () => {
-  const semantic = {};
-  await everywhere({}, async (stage, name, theme) => {
-    const colouringOf = (type) => {
-      stage.set(marked(type));
-      return coloursOnce(stage, name, `${type} is marked in ${theme}`, (seen) => isExact(seen, type, files[name]));
-    };
-    const robots = await colouringOf("class");
-    const movements = await colouringOf("function");
-    semantic[name + theme] = movements.map((one, at) => (has([one], "function") ? robots[at] : one));
-  });
+/** The colours of a program with semantic tokens, put together from those in which other names are marked. */
+async function withTokens(stage, name, theme) {
+  const marking = (type) => {
+    stage.set({ ...tokens(true), ...marked(type) });
+    return coloursOnce(stage, name, `${type} is marked in ${theme}`, (seen) => isExact(seen, type, files[name]));
+  };
+  const robots = await marking("class");
+  const movements = await marking("function");
+  return movements.map((one, at) => (has([one], "function") ? robots[at] : one));
+}
 
-  // As the extension turns them on.
-  const withoutTokens = { "[pydslrep]": { "editor.semanticHighlighting.enabled": false } };
-  let compared = 0;
-  await everywhere({ ...marked("class"), ...withoutTokens }, async (stage, name, theme) => {
-    const expected = semantic[name + theme];
-    let seen;
-    // Until the grammar is loaded, programs have no colours.
-    const isSame = (found) => ((seen = found), found.join() === expected.join());
-    await coloursOnce(stage, name, `the same colours in ${theme}`, isSame).catch((error) => {
-      const differing = seen.flatMap((one, at) => (one === expected[at] ? [] : [`${at}: ${one}, not ${expected[at]}`]));
-      throw new Error([error.message, ...differing].join("\n"));
-    });
-    assert.ok(new Set(seen.map((one) => one.slice(2))).size > 3, `${name} has colours in ${theme}`);
-    compared += seen.length;
+/** The colours of a program by the grammar alone, once they are the expected ones: the marks are gone. */
+async function withoutTokens(stage, name, theme, expected) {
+  stage.set(tokens(false));
+  let seen;
+  const isSame = (found) => ((seen = found), found.join() === expected.join());
+  await coloursOnce(stage, name, `the same colours in ${theme}`, isSame).catch((error) => {
+    const differing = seen.flatMap((one, at) => (one === expected[at] ? [] : [`${at}: ${one}, not ${expected[at]}`]));
+    throw new Error([error.message, ...differing].join("\n"));
   });
-  const shown = Object.keys(THEMES).map((theme) => `${shownIn(theme).length} in ${theme}`).join(", ");
-  console.log(`${compared} characters of programs compared: ${shown}`);
+  return seen;
+}
+
+test("semantic tokens change the colour of no character of the article's programs", async () => {
+  const options = { files, open: names[0], settings: PLAIN, size: { width: 1300, height: 900 } };
+  await Stage.with(options, async (stage) => {
+    for (const [theme, cssClass] of Object.entries(THEMES)) {
+      stage.set({ "workbench.colorTheme": theme });
+      await stage.page.locator(`.monaco-workbench[class*="${cssClass}"]`).waitFor();
+      let compared = 0;
+      for (const name of shownIn(theme)) {
+        await stage.openFile(name);
+        const seen = await withoutTokens(stage, name, theme, await withTokens(stage, name, theme));
+        assert.ok(new Set(seen.map((one) => one.slice(2))).size > 3, `${name} has colours in ${theme}`);
+        compared += seen.length;
+      }
+      console.log(`${theme}: ${compared} characters of ${shownIn(theme).length} programs`);
+    }
+  });
 });

@@ -103,7 +103,7 @@ export class Stage {
       const { tagName, className } = document.activeElement ?? document.body;
       return `${tagName.toLowerCase()}.${String(className)}`;
     });
-    const [dialogues, messages, lists, tabs] = [".monaco-dialog-box", ".notification-toast", ".quick-input-widget", ".tab.active"];
+    const [dialogues, messages, lists, tabs] = [".monaco-dialog-box", ".notification-toast", ".quick-input-widget .monaco-list-row", ".tab.active"];
     return [
       `dialogues: ${await texts(dialogues)}`,
       `messages: ${await texts(messages)}`,
