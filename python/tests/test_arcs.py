@@ -55,7 +55,14 @@ def test_an_arc_turns_to_its_side_in_reverse_as_well(
 
 
 @pytest.mark.parametrize("drive", DRIVES)
-@pytest.mark.parametrize("radius", [0.1, 0.3, 1.0, 5.0])
+@pytest.mark.parametrize(
+    "radius",
+    [
+        0.1,
+        1.0,
+        *(pytest.param(radius, marks=pytest.mark.long) for radius in (0.3, 5.0)),
+    ],
+)
 @pytest.mark.parametrize("reverse", [False, True])
 @pytest.mark.parametrize("motor", [40.0, 25.0])
 def test_every_arc_ends_where_planned(

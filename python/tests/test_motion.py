@@ -57,7 +57,9 @@ def make_robot(drive: str, body: str, chance: random.Random) -> FakeRobot:
 
 @pytest.mark.parametrize("drive", DRIVES)
 @pytest.mark.parametrize("body", BODIES)
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize(
+    "seed", [0, *(pytest.param(seed, marks=pytest.mark.long) for seed in range(1, 4))]
+)
 def test_every_action_ends_where_planned(
     drive: str, body: str, seed: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:

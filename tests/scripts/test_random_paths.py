@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import pytest
 from pydslrep_runtime.facts import ROBOT_TYPES
 
-ALL, FEW = 100, 8
+ALL, FEW = 100, 4
 
 # The beginning of a scene, by what is not as it should be.
 WORLDS = {
