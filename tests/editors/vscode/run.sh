@@ -30,10 +30,20 @@ if [ -z "${VSIX_WEB:-}" ]; then
   VSIX_WEB=$("$repository/editors/vscode/package.sh" --target web)
 fi
 ../../install/npm.sh .
+# Installed once, as a user does; each window gets a copy.
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+(
+  mkdir "$scratch/home" && cd "$scratch/home"
+  export XDG_CONFIG_HOME=$PWD XDG_DATA_HOME=$PWD TMPDIR=$PWD
+  "$node/node" "$CODE_SERVER/node_modules/code-server/out/node/entry.js" --extensions-dir "$scratch/installed" \
+    --install-extension "$VSIX" >/dev/null
+)
 
-export VSIX VSIX_WEB PICTURES=$pictures
+export VSIX_WEB EXTENSIONS=$scratch/installed PICTURES=$pictures
 if [ "${1:-}" = --then ]; then
-  exec "${@:2}"
+  "${@:2}"
+else
+  step "Tests"
+  node --test --test-timeout=1200000 --test-concurrency=1 --test-reporter=spec "${@:-*.test.mjs}"
 fi
-step "Tests"
-exec node --test --test-timeout=1200000 --test-concurrency=1 --test-reporter=spec "${@:-*.test.mjs}"

@@ -7,8 +7,8 @@ import path from "node:path";
 
 import { chromium } from "playwright-core";
 
-const { VSIX, VSIX_WEB, CHROMIUM, CODE_SERVER, PICTURES } = process.env;
-for (const [name, value] of Object.entries({ VSIX, VSIX_WEB, CHROMIUM, CODE_SERVER })) {
+const { EXTENSIONS, VSIX_WEB, CHROMIUM, CODE_SERVER, PICTURES } = process.env;
+for (const [name, value] of Object.entries({ EXTENSIONS, VSIX_WEB, CHROMIUM, CODE_SERVER })) {
   if (!value) {
     throw new Error(`${name} is not set: start the tests with tests/editors/run.sh vscode`);
   }
@@ -138,12 +138,10 @@ export class Stage {
     };
     const base = ["--config", "config.yaml", "--user-data-dir", "data", "--extensions-dir", "extensions"];
     const inScratch = { env: this.env, cwd: this.scratch };
-    // Folders that exist when the first extension is installed count as installed.
     if (virtual) {
       this.#addWebExtensions(virtual);
     } else {
-      cpSync(TEST_EXTENSION, path.join(this.scratch, "extensions/api-tests"), { recursive: true });
-      execFileSync(process.execPath, [entry, ...base, "--install-extension", VSIX], { ...inScratch, stdio: "ignore" });
+      this.#addExtensions();
     }
     const port = await freePort();
     this.address = `127.0.0.1:${port}`;
@@ -179,6 +177,14 @@ export class Stage {
       await this.page.keyboard.press("Control+B");
       await this.page.locator(".part.sidebar").waitFor({ state: "hidden" });
     }
+  }
+
+  /** Copies the installed extension, and adds that of the tests. Without the list of what is installed, all folders are. */
+  #addExtensions() {
+    const extensions = path.join(this.scratch, "extensions");
+    cpSync(EXTENSIONS, extensions, { recursive: true });
+    rmSync(path.join(extensions, "extensions.json"));
+    cpSync(TEST_EXTENSION, path.join(extensions, "api-tests"), { recursive: true });
   }
 
   /**
