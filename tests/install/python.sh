@@ -10,6 +10,7 @@ if ! cmp -s tests/requirements.txt .venv/requirements.txt; then
   python3 -c 'import ensurepip' 2>/dev/null || tests/install/apt.sh python3-venv
   rm -rf .venv
   python3 -m venv .venv
-  .venv/bin/pip install --quiet --disable-pip-version-check --require-hashes --requirement tests/requirements.txt
+  # Without compiling: most modules are never imported.
+  .venv/bin/pip install --quiet --no-compile --disable-pip-version-check --require-hashes --requirement tests/requirements.txt
   cp tests/requirements.txt .venv
 fi

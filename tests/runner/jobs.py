@@ -126,8 +126,8 @@ def checks() -> list[Job]:
             "python",
             (f"{NODE} .venv/bin/pytest -n 2 --durations=10 ${{LONG:+--long}}",),
             after=("tools", "build"),
+            # Two processes that wait a third of the time: for scripts, simulators and servers.
             read=results.of_pytest,
-            processors=2,
         ),
         Job(
             "rust",
@@ -219,7 +219,7 @@ def in_editors() -> list[Job]:
     ]
 
 
-# What begins last: parts that keep both processors of a small machine busy, each beside one that mostly waits.
+# What begins last: parts that keep both processors of a small machine busy together.
 LATE = (
     *("python", "vscode"),
     *("typing", "rust"),
