@@ -7,6 +7,7 @@ import random
 import pytest
 from driving import DRIVES, drive_alone, errors, joints, wheel_middle
 from fake_simulator import FakeRobot, FakeWorld
+from length import few
 from pydslrep_runtime import MovementError, Pose, Robot, detects
 from pydslrep_runtime.circles import Circle
 from pydslrep_runtime.facts import RIM_ACCELERATION, RIM_SPEED
@@ -55,14 +56,7 @@ def test_an_arc_turns_to_its_side_in_reverse_as_well(
 
 
 @pytest.mark.parametrize("drive", DRIVES)
-@pytest.mark.parametrize(
-    "radius",
-    [
-        0.1,
-        1.0,
-        *(pytest.param(radius, marks=pytest.mark.long) for radius in (0.3, 5.0)),
-    ],
-)
+@pytest.mark.parametrize("radius", few(2, (0.1, 1.0, 0.3, 5.0)))
 @pytest.mark.parametrize("reverse", [False, True])
 @pytest.mark.parametrize("motor", [40.0, 25.0])
 def test_every_arc_ends_where_planned(
@@ -93,7 +87,7 @@ def test_every_arc_ends_where_planned(
 
 
 @pytest.mark.parametrize("drive", DRIVES)
-@pytest.mark.parametrize("radius", [0.1, 0.5, 2.0])
+@pytest.mark.parametrize("radius", few(2, (0.1, 2.0, 0.5)))
 @pytest.mark.parametrize("scrub", [0.1, -0.1])
 def test_a_track_that_is_not_as_measured(
     drive: str, radius: float, scrub: float, monkeypatch: pytest.MonkeyPatch

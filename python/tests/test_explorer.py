@@ -5,6 +5,7 @@ from collections.abc import Callable
 
 import pytest
 from ideal_robot import RADIUS, IdealRobot, at_once
+from length import few
 from pydslrep_runtime.pose import Pose
 from pydslrep_runtime.slam.explorer import Explorer, UnboundedAreaError
 from pydslrep_runtime.slam.occupancy_grid import OccupancyGrid
@@ -43,7 +44,7 @@ def two_rooms(door: float) -> Rooms:
     return rooms
 
 
-@pytest.mark.parametrize("seed", [14, pytest.param(3, marks=pytest.mark.long)])
+@pytest.mark.parametrize("seed", few(1, (14, 3)))
 def test_generated_rooms(seed: int) -> None:
     rooms = generate(seed)
     _, explorer = explore(rooms)
@@ -59,7 +60,9 @@ def test_a_door_is_passed_if_the_robot_fits() -> None:
     assert max(node.x for node in explorer.map.nodes) < 2.0
 
 
-@pytest.mark.parametrize(("low", "start"), [(0.5, 0.5), (1.1, 0.6), (1.37, 0.7)])
+@pytest.mark.parametrize(
+    ("low", "start"), few(1, [(1.1, 0.6), (0.5, 0.5), (1.37, 0.7)])
+)
 def test_a_narrow_door_is_found_from_nodes_beside_it(low: float, start: float) -> None:
     # A robot that is unsure of its pose keeps 5 cm more: few ways lead through.
     rooms = Rooms(4.0, 2.5, start=(start, 0.5))

@@ -8,6 +8,7 @@ from collections.abc import Callable
 import pytest
 from driving import DRIVES, drive_alone, errors, joints, wheel_middle
 from fake_simulator import FakeRobot, FakeWorld
+from length import few
 from pydslrep_runtime import Robot
 from pydslrep_runtime.facts import RIM_ACCELERATION
 from pydslrep_runtime.pose import Pose
@@ -57,9 +58,7 @@ def make_robot(drive: str, body: str, chance: random.Random) -> FakeRobot:
 
 @pytest.mark.parametrize("drive", DRIVES)
 @pytest.mark.parametrize("body", BODIES)
-@pytest.mark.parametrize(
-    "seed", [0, *(pytest.param(seed, marks=pytest.mark.long) for seed in range(1, 4))]
-)
+@pytest.mark.parametrize("seed", few(1, range(4)))
 def test_every_action_ends_where_planned(
     drive: str, body: str, seed: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -113,7 +112,7 @@ def test_no_wheel_jumps(drive: str, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize("drive", DRIVES)
-@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("seed", few(2, range(5)))
 def test_slipping_wheels_still_arrive(
     drive: str, seed: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -10,6 +10,7 @@ import shutil
 from typing import Any
 
 import pytest
+from length import few
 from program_runs import Row, assert_near, command_line, drive, place
 
 PROGRAMS = pathlib.Path(__file__).parents[1] / "programs" / "0.3"
@@ -146,7 +147,7 @@ def test_the_wall_is_unknown_from_the_first_round_on(command: str) -> None:
 
 
 @pytest.mark.parametrize("target", TARGETS)
-@pytest.mark.parametrize("heading", [-20, 0, 15, 25])
+@pytest.mark.parametrize("heading", few(2, (-20, 25, 0, 15)))
 def test_the_wall_is_followed(
     command: str, tmp_path: pathlib.Path, heading: int, target: str
 ) -> None:
@@ -202,13 +203,7 @@ def patrol() -> list[Row]:
 
 
 @pytest.mark.parametrize("target", TARGETS)
-@pytest.mark.parametrize(
-    "seed",
-    [
-        pytest.param(seed, marks=() if seed <= 1 else pytest.mark.long)
-        for seed in range(1, 21)
-    ],
-)
+@pytest.mark.parametrize("seed", few(1, range(1, 21)))
 def test_the_guard_waits_for_people(
     command: str, tmp_path: pathlib.Path, seed: int, target: str
 ) -> None:

@@ -18,6 +18,7 @@ from typing import Any
 
 import pytest
 from check_scripts import check_scripts
+from length import few
 from program_runs import assert_near, drive, place
 
 ROOT = pathlib.Path(__file__).parents[2]
@@ -81,13 +82,7 @@ class Examples:
 EXAMPLES = Examples()
 
 
-@pytest.mark.parametrize(
-    "number",
-    [
-        pytest.param(number, marks=() if number < FEW else pytest.mark.long)
-        for number in range(ALL)
-    ],
-)
+@pytest.mark.parametrize("number", few(FEW, range(ALL)))
 def test_what_is_driven_is_planned(
     command: str, tmp_path: pathlib.Path, number: int
 ) -> None:

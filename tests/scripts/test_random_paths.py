@@ -15,6 +15,7 @@ import subprocess
 from dataclasses import dataclass
 
 import pytest
+from length import few
 from pydslrep_runtime.facts import ROBOT_TYPES
 
 ALL, FEW = 100, 4
@@ -157,13 +158,7 @@ def run(
     )
 
 
-@pytest.mark.parametrize(
-    "seed",
-    [
-        pytest.param(seed, marks=() if seed < FEW else pytest.mark.long)
-        for seed in range(ALL)
-    ],
-)
+@pytest.mark.parametrize("seed", few(FEW, range(ALL)))
 def test_every_action_ends_where_it_is_planned(
     command: str, tmp_path: pathlib.Path, seed: int
 ) -> None:
