@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Tests the documentation site in a browser; arguments are options and files for Node's test runner. CHROMIUM: the browser (default: the system's). Leaves screenshots in `out`.
+# Tests the documentation site in a browser; arguments are options and files for Node's test runner. CHROMIUM: the browser (default: the system's). LONG=1 leaves screenshots in `out`.
 set -euo pipefail
 cd "$(dirname "$0")"
 CHROMIUM=$(../install/chromium.sh)

@@ -86,7 +86,7 @@ test("a reader can choose the dark theme", async () => {
   assert.notEqual(await background(), light);
 });
 
-test("screenshots", async () => {
+test("screenshots", { skip: !process.env.LONG && "only with LONG" }, async () => {
   for (const [look, options] of Object.entries({
     light: {},
     dark: { colorScheme: "dark" },

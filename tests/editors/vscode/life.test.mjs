@@ -1,6 +1,6 @@
 // The life cycle of the language server: restarts, the server path setting, and helpful messages if it is missing.
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
+import { after, afterEach, before, test } from "node:test";
 
 import { Stage, program, until } from "./stage.mjs";
 
@@ -21,6 +21,7 @@ before(async () => {
   stage = await Stage.open({ files: FILES, open: "broken.pyr", settings });
 });
 
+afterEach((t) => t.passed || stage?.keepPicture());
 after(() => stage?.close());
 
 /** The hover of the language status in the status bar. */
