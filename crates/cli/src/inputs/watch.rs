@@ -55,14 +55,7 @@ impl Watch {
         // The receiver is gone only when the command ends.
         let tell = move |event: notify::Result<Event>| drop(event.map(|event| sender.send(event)));
         let mut watcher = notify::recommended_watcher(tell).map_err(|error| unwatched(&error))?;
-        for (folder, mode) in scope.watched() {
-            match watcher.watch(&folder, mode) {
-                Ok(()) => {}
-                // Removed in the meantime: its parent reports it. Not all parents are readable.
-                Err(_) if !folder.exists() || mode == RecursiveMode::NonRecursive => {}
-                Err(error) => return Err(unwatched(&error)),
-            }
-        }
+        watch_all(&mut watcher, &scope)?;
         self.scope = scope;
         drop(self.watcher.replace(watcher));
         Ok(())
@@ -84,6 +77,28 @@ impl Watch {
             if timeout(QUIET, self.events.recv()).await.is_err() {
                 break;
             }
+        }
+    }
+}
+
+/// Watches all folders of a scope, and then those that have appeared meanwhile: before its parent was watched, one that appears
+/// is not reported.
+fn watch_all(watcher: &mut RecommendedWatcher, scope: &Scope) -> Result<(), Failure> {
+    let mut watched = BTreeSet::new();
+    loop {
+        let mut left = scope.watched();
+        left.retain(|(folder, _)| !watched.contains(folder));
+        if left.is_empty() {
+            return Ok(());
+        }
+        for (folder, mode) in left {
+            match watcher.watch(&folder, mode) {
+                Ok(()) => {}
+                // Removed in the meantime: its parent reports it. Not all parents are readable.
+                Err(_) if !folder.exists() || mode == RecursiveMode::NonRecursive => {}
+                Err(error) => return Err(unwatched(&error)),
+            }
+            watched.insert(folder);
         }
     }
 }
