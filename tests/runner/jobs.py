@@ -126,7 +126,7 @@ def checks() -> list[Job]:
             "python",
             (f"{NODE} .venv/bin/pytest -n 2 --durations=10 ${{LONG:+--long}}",),
             after=("tools", "build"),
-            # Two processes that wait a third of the time: for scripts, simulators and servers.
+            # It counts as one processor: its two processes wait a third of the time, for scripts, simulators and servers.
             read=results.of_pytest,
         ),
         Job(
