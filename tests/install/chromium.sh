@@ -5,11 +5,14 @@ set -euo pipefail
 source "$(dirname "$0")/lock.sh"
 
 found() {
+  local name
   if [ -n "${CHROMIUM:-}" ]; then
     command -v "$CHROMIUM"
-  else
-    command -v chromium-headless-shell chrome-headless-shell chromium chromium-browser google-chrome | head -1
+    return
   fi
+  for name in chromium-headless-shell chrome-headless-shell chromium chromium-browser google-chrome; do
+    if command -v "$name"; then return; fi
+  done
 }
 if [ -z "$(found)" ]; then
   wait_for_turn
