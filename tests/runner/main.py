@@ -16,6 +16,7 @@ from schedule import LIMIT, Schedule, runner
 AMOUNTS = {
     "PYDSLREP_EDITS": "1000000",
     "PYDSLREP_COMPARE_EVERY": "25",
+    "PYDSLREP_COMPLETED": "1000",
     "PYDSLREP_PROGRAMS": "100000",
     "PYDSLREP_MUTATIONS": "2000",
     "PYDSLREP_HOSTILE": "50",

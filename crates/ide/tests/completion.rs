@@ -1,4 +1,5 @@
-//! Completion offers exactly what the grammar allows, including the next word of every program.
+//! Completion offers exactly what the grammar allows, including the next word of every program. `PYDSLREP_COMPLETED` says
+//! how many random programs are tried.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests are tests, too")]
 
@@ -10,6 +11,9 @@ use pydslrep_ide::{
     Completion, CompletionKind, CompletionTrigger, Definition, FilePosition, completions, goto_definition,
 };
 use pydslrep_syntax::{Found, KEYWORDS, Span, SyntaxErrorKind, Token, TokenKind, cut, lex, parse};
+
+/// How many random programs are tried by default.
+const COMPLETED: u64 = 60;
 
 /// The paper's programs and variants of them.
 fn paper_programs() -> Vec<String> {
@@ -127,11 +131,13 @@ fn the_words_offered_are_those_that_fit() {
     for text in paper_programs() {
         check_while_typed(&text, &mut seen);
     }
-    for seed in 0..200 {
+    let count =
+        std::env::var("PYDSLREP_COMPLETED").ok().and_then(|count| count.parse().ok()).unwrap_or(COMPLETED);
+    for seed in 0..count {
         check_while_typed(&pydslrep_naive::program(seed, 30), &mut seen);
     }
     let imports = pydslrep_naive::Recipe { imports: true, lines: 5, ..pydslrep_naive::Recipe::default() };
-    for seed in 0..20 {
+    for seed in 0..count / 10 {
         check_while_typed(&imports.seeded(seed), &mut seen);
     }
     assert!(seen.len() > 1_000, "only {} places", seen.len());

@@ -4,52 +4,22 @@
 //! where the server opens it; Ctrl+Space opens it anywhere; Down selects the next item, Tab accepts the selected item or
 //! moves to the next tab stop, End leaves a snippet. Enter indents the next line and closes a brace opened before it.
 
-use pydslrep_analysis::{Database, FileId};
-use pydslrep_ide::{Completion, CompletionTrigger, FilePosition, completions};
-use pydslrep_syntax::Span;
+use pydslrep_ide::CompletionTrigger;
 
 use crate::snippet::{Filled, matched};
-
-/// A program being typed.
-struct Typed {
-    database: Database,
-    file: FileId,
-    length: usize,
-}
-
-impl Typed {
-    fn new() -> Self {
-        let mut database = Database::new();
-        let file = database.open("a.pyr", "");
-        Self { database, file, length: 0 }
-    }
-
-    fn type_to(&mut self, program: &str, end: usize) {
-        self.database.edit(self.file, Span::at(offset(self.length)), &program[self.length..end]);
-        self.length = end;
-    }
-
-    fn offered(&self, trigger: CompletionTrigger) -> Vec<Completion> {
-        let position = FilePosition { file: self.file, offset: offset(self.length) };
-        completions(&self.database, position, trigger, 9.0)
-    }
-}
-
-fn offset(length: usize) -> u32 {
-    u32::try_from(length).unwrap()
-}
+use crate::typed::Typed;
 
 /// The minimum number of keys.
 pub(crate) fn keys(program: &str) -> usize {
     let mut fewest = vec![usize::MAX; program.len() + 1];
     fewest[0] = 0;
-    let mut typed = Typed::new();
+    let mut typed = Typed::new(program);
     for at in 0..program.len() {
         let so_far = fewest[at];
         if so_far == usize::MAX {
             continue;
         }
-        typed.type_to(program, at);
+        typed.type_to(at);
         let next = next_key(program, at);
         fewest[next] = fewest[next].min(so_far + 1);
         for (end, keys) in accepted(&typed, program) {
@@ -74,7 +44,7 @@ fn next_key(program: &str, at: usize) -> usize {
 
 /// The acceptable items with the resulting offset and their number of keys.
 fn accepted(typed: &Typed, program: &str) -> Vec<(usize, usize)> {
-    let before = program[..typed.length].chars().last();
+    let before = program[..typed.length()].chars().last();
     let opened = match before {
         Some(letter) if letter.is_ascii_alphanumeric() || letter == '_' => {
             typed.offered(CompletionTrigger::Letter)
@@ -95,7 +65,7 @@ fn accepted(typed: &Typed, program: &str) -> Vec<(usize, usize)> {
             };
             let is_whole = !program[end..].starts_with(|c: char| c.is_ascii_alphanumeric() || c == '_');
             let ends_line = program[end..].starts_with('\n') && !item.insert.contains("$0");
-            (is_whole && end > typed.length).then(|| (end, open + rank + 1 + filled_in(&stops, ends_line)))
+            (is_whole && end > typed.length()).then(|| (end, open + rank + 1 + filled_in(&stops, ends_line)))
         })
         .collect()
 }

@@ -1,8 +1,9 @@
 //! The rank of the next word of a program in the completion list.
 
-use pydslrep_analysis::Database;
-use pydslrep_ide::{CompletionTrigger, FilePosition, completions};
+use pydslrep_ide::CompletionTrigger;
 use pydslrep_syntax::{Span, Token, TokenKind, lex};
+
+use crate::typed::Typed;
 
 /// Counts over all positions where a keyword or name comes next.
 #[derive(Debug, Clone, Copy, Default)]
@@ -22,10 +23,11 @@ impl Ranks {
 /// first letter.
 pub(crate) fn ranks(program: &str) -> Ranks {
     let mut ranks = Ranks::default();
+    let mut typed = Typed::new(program);
     let tokens: Vec<Token> = lex(program).into_iter().filter(|(token, _)| !token.is_comment()).collect();
     for (index, (token, span)) in tokens.iter().enumerate() {
         let is_due = token.is_keyword() || (token.is_name() && is_known(program, &tokens, index));
-        if is_due && let Some(words) = offered(program, *span) {
+        if is_due && let Some(words) = offered(program, &mut typed, *span) {
             ranks.places += 1;
             ranks.first += usize::from(words.first().is_some_and(|first| first == span.text(program)));
         }
@@ -58,23 +60,25 @@ fn declares(before: &[Token]) -> bool {
 
 /// The distinct words that are offered when the list opens, best first; `None` if no list opens, as for words that are
 /// almost complete after the first letter.
-fn offered(program: &str, word: Span) -> Option<Vec<String>> {
-    let blank = program[..word.start as usize].chars().last();
-    let by_blank = blank.map(|blank| asked(program, word.start, CompletionTrigger::Character(blank)));
+fn offered(program: &str, typed: &mut Typed, word: Span) -> Option<Vec<String>> {
+    typed.type_to(word.start as usize);
+    let blank = program[..typed.length()].chars().last();
+    let by_blank = blank.map(|blank| words(typed, CompletionTrigger::Character(blank)));
     by_blank.filter(|words| !words.is_empty()).or_else(|| {
         let length = word.end - word.start;
-        let words = (length > 1).then(|| asked(program, word.start + 1, CompletionTrigger::Letter));
-        words.filter(|words| length > 4 || !words.is_empty())
+        if length == 1 {
+            return None;
+        }
+        typed.type_to(word.start as usize + 1);
+        let words = words(typed, CompletionTrigger::Letter);
+        (length > 4 || !words.is_empty()).then_some(words)
     })
 }
 
-/// The words that are offered after the typed part of the program.
-fn asked(program: &str, offset: u32, trigger: CompletionTrigger) -> Vec<String> {
-    let mut database = Database::new();
-    let file = database.open("a.pyr", &program[..offset as usize]);
-    let items = completions(&database, FilePosition { file, offset }, trigger, 9.0);
+/// The distinct first words of what is offered, best first.
+fn words(typed: &Typed, trigger: CompletionTrigger) -> Vec<String> {
     let mut words: Vec<String> = Vec::new();
-    for item in items {
+    for item in typed.offered(trigger) {
         let word = item.insert.split_whitespace().next().unwrap_or_default().to_owned();
         if !words.contains(&word) {
             words.push(word);
