@@ -76,8 +76,9 @@ class FakeRobot:
             self.sinking += 9.81 * dt
             self.height -= self.sinking * dt
         before = self.theta
+        contacts = Contacts.of(self.joints, traction)
         for _ in range(SUBSTEPS):
-            self._substep(dt / SUBSTEPS, traction)
+            self._substep(dt / SUBSTEPS, contacts)
         slid = self.drift * (self.theta - before)
         self.x -= slid * math.sin(self.theta)
         self.y += slid * math.cos(self.theta)
@@ -88,43 +89,67 @@ class FakeRobot:
             [joint.axis_sign * joint.rate for joint in self.joints]
         )
 
-    def _substep(self, dt: float, traction: Sequence[float]) -> None:
+    def _substep(self, dt: float, contacts: "Contacts") -> None:
+        limit = self.motor_acceleration * dt
         for joint in self.joints:
             change = joint.target - joint.rate if joint.mode == 4 else -joint.rate
-            limit = self.motor_acceleration * dt
-            joint.rate += max(-limit, min(limit, change))
+            joint.rate += max(-limit, min(limit, change)) if change else 0.0
             joint.angle += joint.rate * dt
-        vx, vy, omega = self.twist(traction)
+        vx, vy, omega = self.twist(contacts)
         middle = self.theta + omega * dt / 2.0
-        if self.x + (vx * math.cos(middle) - vy * math.sin(middle)) * dt > self.wall:
+        cos, sin = math.cos(middle), math.sin(middle)
+        x = self.x + (vx * cos - vy * sin) * dt
+        if x > self.wall:
             return
-        self.x += (vx * math.cos(middle) - vy * math.sin(middle)) * dt
-        y = self.y + (vx * math.sin(middle) + vy * math.cos(middle)) * dt
-        self.y = max(y, self.kerb)
+        self.x = x
+        self.y = max(self.y + (vx * sin + vy * cos) * dt, self.kerb)
         self.theta += omega * dt
 
-    def twist(self, traction: Sequence[float]) -> tuple[float, float, float]:
+    def twist(self, contacts: "Contacts") -> tuple[float, float, float]:
         """The twist of the body's origin; the wheels are symmetric about their centre."""
-        cx = sum(joint.x for joint in self.joints) / len(self.joints)
-        cy = sum(joint.y for joint in self.joints) / len(self.joints)
-        rims = [
-            joint.axis_sign * joint.rate * joint.radius * factor
-            for joint, factor in zip(self.joints, traction, strict=True)
-        ]
-        arms = [
-            (joint.y - cy) - joint.roller * (joint.x - cx) for joint in self.joints
-        ]  # rim = vx + roller vy - arm omega
-        vx = sum(rims) / len(rims)
-        rollers = [joint.roller for joint in self.joints]
-        vy = sum(r * s for r, s in zip(rims, rollers, strict=True)) / (
-            sum(s * s for s in rollers) or 1.0
-        )
-        omega = -sum(r * a for r, a in zip(rims, arms, strict=True)) / sum(
-            a * a for a in arms
-        )
+        vx = vy = omega = 0.0
+        for joint, (grip, ahead, left, turn) in zip(
+            self.joints, contacts.wheels, strict=True
+        ):
+            rim = joint.rate * grip
+            vx += rim * ahead
+            vy += rim * left
+            omega += rim * turn
         omega *= 1.0 - (self.scrub or 0.0)
         # from the wheels' centre to the body's origin
-        return vx + omega * cy, vy - omega * cx, omega
+        return vx + omega * contacts.cy, vy - omega * contacts.cx, omega
+
+
+@dataclass(frozen=True)
+class Contacts:
+    """What does not change during a step: where the wheels are, and how well they grip.
+
+    The speed of a wheel's rim is vx + roller vy - arm omega.
+    """
+
+    cx: float  # m: the centre of all wheels
+    cy: float
+    # Of each: its rim's speed per radian, and what that adds to vx, vy and omega.
+    wheels: Sequence[tuple[float, float, float, float]]
+
+    @classmethod
+    def of(cls, joints: Sequence[FakeJoint], traction: Sequence[float]) -> "Contacts":
+        """Those of joints with their tractions."""
+        cx = sum(joint.x for joint in joints) / len(joints)
+        cy = sum(joint.y for joint in joints) / len(joints)
+        arms = [(joint.y - cy) - joint.roller * (joint.x - cx) for joint in joints]
+        rollers = sum(joint.roller**2 for joint in joints) or 1.0
+        squares = sum(arm * arm for arm in arms)
+        wheels = [
+            (
+                joint.axis_sign * joint.radius * factor,
+                1.0 / len(joints),
+                joint.roller / rollers,
+                -arm / squares,
+            )
+            for joint, factor, arm in zip(joints, traction, arms, strict=True)
+        ]
+        return cls(cx, cy, wheels)
 
 
 def usual_scrub(joints: Sequence[FakeJoint]) -> float:

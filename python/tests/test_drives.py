@@ -5,7 +5,7 @@ import random
 
 import pytest
 from driving import DRIVES, ROBOTS, joints
-from fake_simulator import FakeRobot
+from fake_simulator import Contacts, FakeRobot
 from pydslrep_runtime.drives import FourWheelDrive, MecanumDrive, TwoWheelDrive
 from pydslrep_runtime.errors import SetupError
 from pydslrep_runtime.pose import Pose
@@ -25,7 +25,7 @@ def twist_of(robot: FakeRobot, rates: list[float]) -> tuple[float, float, float]
     """How the simulated robot moves when its wheels turn at these rates."""
     for joint, rate in zip(robot.joints, rates, strict=True):
         joint.rate = rate
-    return robot.twist([1.0] * len(rates))
+    return robot.twist(Contacts.of(robot.joints, [1.0] * len(rates)))
 
 
 @pytest.mark.parametrize("radii", [[0.045] * 2, [0.03, 0.06]])

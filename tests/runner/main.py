@@ -73,6 +73,8 @@ def arguments() -> argparse.Namespace:
 def variables(long: bool) -> dict[str, str]:
     """The environment of all jobs."""
     found = os.environ | {
+        # Some images forbid it; then every one of hundreds of scripts compiles again what it imports.
+        "PYTHONDONTWRITEBYTECODE": "",
         "PYDSLREP": str(jobs.BUILT / "pydslrep"),
         "PYDSLREP_LSP": str(jobs.BUILT / "pydslrep-lsp"),
         "RANDOM_PROGRAMS": str(jobs.BUILT / "random-programs"),

@@ -68,16 +68,18 @@ class OccupancyGrid:
         end = reading.distance + self.CELL if reading.is_hit else depth
         cos, sin, slope = math.cos(sensor.theta), math.sin(sensor.theta), math.tan(half)
         columns, rows = self._bounding_box(sensor, half, end)
+        ups = [(row, row * self.CELL - sensor.y) for row in rows]
+        parts = [(row, up * cos, up * sin, up * up) for row, up in ups]
+        near, far = depth * depth, end * end if reading.is_hit else -1.0
         for column in columns:
             right = column * self.CELL - sensor.x
-            for row in rows:
-                up = row * self.CELL - sensor.y
-                if abs(up * cos - right * sin) > slope * (right * cos + up * sin):
+            along, across, square = right * cos, right * sin, right * right
+            for row, up_across, up_along, up_square in parts:
+                if abs(up_across - across) > slope * (along + up_along):
                     continue
-                square = right * right + up * up
-                if square <= depth * depth:
+                if square + up_square <= near:
                     self._free.add((column, row))
-                elif reading.is_hit and square <= end * end:
+                elif square + up_square <= far:
                     self._occupied.add((column, row))
 
     def add_cells(self, free: Iterable[Cell], occupied: Iterable[Cell]) -> None:
@@ -105,8 +107,10 @@ class OccupancyGrid:
 
     def is_path_clear(self, start: Position, end: Position) -> bool:
         """Whether the robot can drive straight from one position to another."""
+        clear = self._clear_cells
         return all(
-            self._has_clearance(cell) for cell in self._cells_between(start, end)
+            cell in clear or self._has_clearance(cell)
+            for cell in self._cells_between(start, end)
         )
 
     def is_featureless(self, position: Position) -> bool:
@@ -148,11 +152,13 @@ class OccupancyGrid:
 
     def _cells_between(self, start: Position, end: Position) -> Iterator[Cell]:
         count = max(1, math.ceil(math.dist(start, end) / (0.5 * self.CELL)))
+        size, (x, y) = self.CELL, start
+        to_right, upwards = end[0] - x, end[1] - y
         for index in range(count + 1):
             part = index / count
-            yield self._cell(
-                start[0] + part * (end[0] - start[0]),
-                start[1] + part * (end[1] - start[1]),
+            yield (
+                round((x + part * to_right) / size),
+                round((y + part * upwards) / size),
             )
 
     def _disc(self, radius: float) -> Iterator[Cell]:
