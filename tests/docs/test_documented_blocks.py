@@ -5,7 +5,7 @@
 * `pydslrep`: a program without errors and warnings. With `wrong`, it has some; with `fragment`, it is a part of a program
   and only its syntax is checked.
 * `console`: commands after `$`, with their output. `sh`: commands that are looked up, and run if the block says `run`. With
-  `slow`, they are run at full length only (`tests/run.sh --long`), and when outputs are written anew.
+  `slow`, either is run at full length only (`tests/run.sh --long`), and when outputs are written anew.
 * A picture of a page that its commands make is the one that they make.
 
 `UPDATE_EXPECT=1` writes outputs and pictures anew.
@@ -128,12 +128,14 @@ def play(command: str, folder: Path, page: Path) -> list[str]:
     for block in blocks(page):
         if block.language == "pydslrep":
             wrong += [f"{block}: {said}" for said in check_program(session, block)]
+        elif not is_runnable(block):
+            continue
         elif block.language == "console":
             is_now = session.transcript(block)
             if comparable(is_now) != comparable(block.code):
                 wrong.append(f"{block}: it is now\n{is_now}")
                 edits.append((block, is_now))
-        elif "run" in block.info and is_runnable(block):
+        elif "run" in block.info:
             for line in commands(block):
                 code, output = session.run(line)
                 if code:

@@ -69,8 +69,8 @@ def mistakes(tree_sitter: TreeSitter) -> list[Broken]:
     choose = random.Random(7)
     found = []
     for program, count in [
-        *((text, 4) for text in random_programs(80, 12)),
-        (ACTIONS, 200),
+        *((text, 4) for text in random_programs(40, 12)),
+        (ACTIONS, 100),
     ]:
         starts = tree_sitter.entities(program)
         found += [broken(program, starts, choose) for _ in range(count) if starts]

@@ -22,7 +22,7 @@ from pydslrep_runtime.remote_api import Connection
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="processes' use")
 
-FEW = 8  # lies to each of four
+FEW = 5  # lies to each of four
 LIMIT = 120.0  # s, on a slow machine
 MAX_MEMORY = 700 << 20  # bytes
 MAX_OUTPUT = 4000  # characters

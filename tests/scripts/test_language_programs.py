@@ -147,7 +147,7 @@ def test_the_wall_is_unknown_from_the_first_round_on(command: str) -> None:
 
 
 @pytest.mark.parametrize("target", TARGETS)
-@pytest.mark.parametrize("heading", few(2, (-20, 25, 0, 15)))
+@pytest.mark.parametrize("heading", few(1, (-20, 25, 0, 15)))
 def test_the_wall_is_followed(
     command: str, tmp_path: pathlib.Path, heading: int, target: str
 ) -> None:

@@ -124,7 +124,7 @@ def test_a_simulation_stopped_by_another_client(stage: Stage, ports: list[int]) 
 def test_a_script_waits_while_the_simulation_is_paused(
     stage: Stage, ports: list[int], options: tuple[str, ...]
 ) -> None:
-    short = PROGRAM.format(*ports, actions="move 10 centimeters turn left")
+    short = PROGRAM.format(*ports, actions="move 4 centimeters turn left 10")
     stage.program.write_text(short, encoding="utf-8")
     script, trace = stage.build("vrep"), stage.folder / "trace"
     halt = Halt(script)
@@ -136,7 +136,7 @@ def test_a_script_waits_while_the_simulation_is_paused(
         assert sim.simxStartSimulation(eye, BLOCKING) == 0
         _, err = finish(process)
         assert "paused" not in err, "it says so once"
-    assert_near(ends(trace)["rover"], (0.1, 0.0, 90.0))
+    assert_near(ends(trace)["rover"], (0.04, 0.0, 10.0))
 
 
 def test_a_simulation_that_is_stopped_during_a_pause(

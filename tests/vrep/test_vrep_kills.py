@@ -1,6 +1,6 @@
 """Scripts that are killed, interrupted or disconnected at any time leave the simulator unaffected.
 
-`PYDSLREP_KILLS=100` tests more than the few times of a normal test run.
+`PYDSLREP_KILLS=100` tests more than the three times of a normal test run.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from stage import (
 )
 from until import LIMIT, until
 
-KILLS = int(os.environ.get("PYDSLREP_KILLS", "6"))
+KILLS = int(os.environ.get("PYDSLREP_KILLS", "3"))
 
 # The number of messages before a script ends: from its first message to the middle of its path.
 MAX_PARTS = 600
