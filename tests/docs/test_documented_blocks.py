@@ -209,10 +209,9 @@ def test_every_drawing_is_made_by_a_page(
     # The plot of the comparison is drawn from its measurements: tests/bench/test_comparison.py.
     images = ROOT / "docs" / "images"
     drawings = {*images.glob("*.svg")} - {images / "comparison.svg"}
-    if not IS_PATIENT:
-        slow = {block.page for block in ALL if "slow" in block.info}
-        drawings -= {drawing for page in slow for drawing in pictures(page)}
-    assert drawings == MADE
+    assert drawings >= MADE
+    slow = {block.page for block in ALL if not IS_PATIENT and "slow" in block.info}
+    assert drawings - MADE <= {drawing for page in slow for drawing in pictures(page)}
 
 
 @pytest.mark.parametrize(

@@ -124,9 +124,9 @@ def checks() -> list[Job]:
         Job("rustfmt", ("cargo fmt --all --check",)),
         Job(
             "python",
-            (f"{NODE} .venv/bin/pytest -n 2 --durations=10 ${{LONG:+--long}}",),
+            (f"{NODE} .venv/bin/pytest -n 4 --durations=10 ${{LONG:+--long}}",),
             after=("tools", "build"),
-            # It counts as one processor: its two processes wait a third of the time, for scripts, simulators and servers.
+            # It counts as one processor: its four processes wait half of the time, for scripts, simulators and servers.
             read=results.of_pytest,
         ),
         Job(
