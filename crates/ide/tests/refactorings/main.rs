@@ -138,7 +138,7 @@ fn lost_comment(before: &str, after: &str) -> Option<String> {
 }
 
 fn count() -> u64 {
-    std::env::var("PYDSLREP_REFACTORED").ok().and_then(|count| count.parse().ok()).unwrap_or(10)
+    std::env::var("PYDSLREP_REFACTORED").ok().and_then(|count| count.parse().ok()).unwrap_or(6)
 }
 
 fn random_programs() -> impl Iterator<Item = String> {

@@ -22,7 +22,7 @@ const MAX_KEYS: f64 = 0.55;
 /// The minimum share of positions where the next word ranks first.
 const FIRST: f64 = 0.9;
 /// How many generated programs are typed.
-const GENERATED: u64 = 15;
+const GENERATED: u64 = 10;
 
 struct Program {
     name: String,
