@@ -73,10 +73,10 @@ export class Stage {
     }
   }
 
-  /** As `with`, after the tests of a file in `api` have run in the extension host; the test gets their results. */
-  static async withApi(options, tests, test) {
+  /** As `with`, after the tests in `api` have run in the extension host; the test gets their results. */
+  static async withApi(options, test) {
     const out = path.join(os.tmpdir(), `pyr-api-${process.pid}.json`);
-    const testsPath = path.join(TEST_EXTENSION, tests);
+    const testsPath = path.join(TEST_EXTENSION, "all.cjs");
     const prepare = async (page) => {
       await page.exposeFunction("codeAutomationExit", () => undefined);
       await page.exposeFunction("codeAutomationLog", () => undefined);

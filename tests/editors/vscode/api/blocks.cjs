@@ -3,7 +3,7 @@ const assert = require("node:assert/strict");
 
 const vscode = require("vscode");
 
-const { ask, at, open, running, until } = require("./asking.cjs");
+const { ask, at, open, until } = require("./asking.cjs");
 
 const nested = () => open("nested.pyr");
 
@@ -23,7 +23,7 @@ async function hovered(document, text, offset = 0) {
 /** The texts of locations in a document. */
 const texts = (document, found) => found.map(({ range, targetSelectionRange }) => document.getText(targetSelectionRange ?? range));
 
-const tests = {
+module.exports = {
   async "the outline has blocks"() {
     const document = await nested();
     const symbols = await until("there is an outline", () => ask("executeDocumentSymbolProvider", document.uri));
@@ -174,10 +174,4 @@ const tests = {
       assert.ok(titles.some((offered) => offered.toLowerCase().includes(title)), `${title}: ${titles.join()}`);
     }
   },
-};
-
-exports.run = async () => {
-  await running(tests)();
-  // At its end the extension host would end, and with it what the editor shows.
-  await new Promise(() => undefined);
 };
