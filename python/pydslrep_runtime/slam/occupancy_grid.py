@@ -107,7 +107,7 @@ class OccupancyGrid:
 
     def is_path_clear(self, start: Position, end: Position) -> bool:
         """Whether the robot can drive straight from one position to another."""
-        clear = self._clear_cells
+        clear = self._clear_cells  # most cells of a way are known: these cost no call
         return all(
             cell in clear or self._has_clearance(cell)
             for cell in self._cells_between(start, end)
