@@ -63,10 +63,11 @@ MILLION = (
             "after 10000 rounds front, side still detect nothing within 1 m",
             marks=LONG,
         ),
-        (
+        pytest.param(
             MILLION,
             {"action": 4, "rounds": [1, 100]},
             "no time has passed in 1000000 rounds",
+            marks=LONG,
         ),
     ],
     ids=["move", "turn", "circle", "wait", "repeat until", "no time"],

@@ -25,7 +25,7 @@ ROOT = pathlib.Path(__file__).parents[2]
 TARGET = pathlib.Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
 GENERATOR = os.environ.get("RANDOM_PROGRAMS", TARGET / "debug" / "random-programs")
 
-ALL, FEW = 200, 4
+ALL, FEW = 200, 3
 LINES = 40
 # Longer ones cost time and show nothing more.
 ACTIONS, DURATION = 80, 150.0  # s
