@@ -29,7 +29,7 @@ class Job:
     """The jobs that must have ended first; without those that prepare something, it cannot run."""
     read: Callable[[str], results.Results] = results.of_nothing
     processors: int = 1
-    """How many it keeps busy; 0 if it mostly waits for others."""
+    """How many it keeps busy."""
     cargo: bool = False
     """Whether it builds: two that do would wait for each other."""
     editor: bool = False
@@ -180,11 +180,10 @@ def in_editors() -> list[Job]:
         command: str,
         *after: str,
         read: Callable[[str], results.Results] | None = None,
-        processors: int = 1,
     ) -> Job:
         read = read or results.of_node_in(f"{editor} {name}")
         needed = (*ready, *after)
-        return Job(name, (command,), needed, read, processors, editor=True)
+        return Job(name, (command,), needed, read, editor=True)
 
     return [
         job(
@@ -201,7 +200,7 @@ def in_editors() -> list[Job]:
             read=results.of_typing,
         ),
         job("preview", f"{editor} preview"),
-        job("neovim", f"{editor} neovim", read=results.of_neovim, processors=0),
+        job("neovim", f"{editor} neovim", read=results.of_neovim),
         job(
             "documentation",
             SITE,
@@ -215,17 +214,17 @@ def in_editors() -> list[Job]:
             ("tests/ros/run.sh ${LONG:+--long}",),
             after=("tools", "build"),
             read=partial(results.of_pytest, command="tests/ros/run.sh"),
-            processors=0,
             editor=True,
         ),
     ]
 
 
-# What begins last. The tests of Rust and clippy are the very last: each keeps all processors busy until the end.
+# What begins last: parts that keep both processors of a small machine busy together.
 LATE = (
-    *("python", "vscode", "typing", "playground"),
-    *("preview", "documentation", "web"),
-    *("rust", "clippy"),
+    *("python", "vscode"),
+    *("typing", "rust"),
+    *("clippy", "playground"),
+    *("preview", "neovim", "documentation", "web"),
 )
 
 
