@@ -83,7 +83,6 @@ ONLY_IN: dict[str, set[str]] = {
     "logos": {"syntax"},
     "ropey": {"text", "analysis", "workspace", "server", "browser", "cli"},
     "rust-embed": {"script"},
-    "js-sys": {"browser"},
     "wasm-bindgen": {"browser"},
     "svg": {"picture"},
     "resvg": {"picture"},

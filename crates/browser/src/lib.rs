@@ -15,7 +15,6 @@ mod simulation;
 
 use std::panic;
 
-use js_sys::{Array, Uint8Array};
 use pydslrep_simulator::Answer;
 use wasm_bindgen::prelude::*;
 
@@ -109,7 +108,7 @@ impl Simulator {
     }
 
     /// Handles a request of the `ZeroMQ` remote API, one CBOR map; `connection` is who sent it.
-    pub fn request(&mut self, connection: u32, ticket: u32, now: f64, bytes: &[u8]) -> Array {
+    pub fn request(&mut self, connection: u32, ticket: u32, now: f64, bytes: &[u8]) -> Vec<JsValue> {
         let now = simulation::duration(now);
         replies(self.0.session.request(connection.into(), ticket.into(), now, bytes))
     }
@@ -120,22 +119,26 @@ impl Simulator {
     /// # Errors
     /// If the message is invalid; the rest of the connection cannot be trusted then.
     #[wasm_bindgen(js_name = legacyMessage)]
-    pub fn legacy_message(&mut self, connection: u32, now: f64, bytes: &[u8]) -> Result<Array, JsError> {
+    pub fn legacy_message(
+        &mut self,
+        connection: u32,
+        now: f64,
+        bytes: &[u8],
+    ) -> Result<Vec<JsValue>, JsError> {
         let now = simulation::duration(now);
         let response = self.0.session.legacy_message(connection.into(), now, bytes);
         let response = response.map_err(|_| JsError::new("not a message of the legacy remote API"))?;
-        let reply = Uint8Array::from(response.reply.as_slice()).into();
-        Ok(Array::of3(&reply, &response.is_last.into(), &replies(response.answers)))
+        Ok(vec![js_bytes(response.reply), response.is_last.into(), js_array(replies(response.answers))])
     }
 
     /// Removes a connection and its clients; the wheels that they drove stop.
-    pub fn disconnect(&mut self, connection: u32) -> Array {
+    pub fn disconnect(&mut self, connection: u32) -> Vec<JsValue> {
         replies(self.0.session.disconnect(connection.into()))
     }
 
     /// Expires silent clients, and keeps those alive that wait for a step. To be called now and then.
     #[wasm_bindgen(js_name = expireClients)]
-    pub fn expire_clients(&mut self, now: f64) -> Array {
+    pub fn expire_clients(&mut self, now: f64) -> Vec<JsValue> {
         replies(self.0.session.expire_clients(simulation::duration(now)))
     }
 
@@ -146,7 +149,7 @@ impl Simulator {
     }
 
     /// Takes a step of a simulation that runs freely.
-    pub fn tick(&mut self) -> Array {
+    pub fn tick(&mut self) -> Vec<JsValue> {
         replies(self.0.session.tick())
     }
 
@@ -157,21 +160,31 @@ impl Simulator {
     }
 }
 
-fn replies(answers: Vec<Answer>) -> Array {
-    let replies = answers.into_iter().map(|Answer { ticket, bytes }| {
+fn replies(answers: Vec<Answer>) -> Vec<JsValue> {
+    let reply = |Answer { ticket, bytes: reply }| {
         #[expect(clippy::cast_precision_loss, reason = "tickets come from 32 bits")]
         let ticket = JsValue::from_f64(ticket as f64);
-        Array::of2(&ticket, &Uint8Array::from(bytes.as_slice()))
-    });
-    replies.collect()
+        js_array(vec![ticket, js_bytes(reply)])
+    };
+    answers.into_iter().map(reply).collect()
 }
 
 /// The files of the package that scripts import: for each `[path, text]`, the path in its folder `pydslrep_runtime`.
 #[wasm_bindgen(js_name = runtimeFiles)]
-pub fn runtime_files() -> Array {
+pub fn runtime_files() -> Vec<JsValue> {
     let files = pydslrep_script::runtime::files().into_iter().map(|file| {
         let text = String::from_utf8_lossy(&file.content);
-        Array::of2(&JsValue::from_str(&file.path), &JsValue::from_str(&text))
+        js_array(vec![JsValue::from_str(&file.path), JsValue::from_str(&text)])
     });
     files.collect()
+}
+
+/// An `Array`.
+fn js_array(values: Vec<JsValue>) -> JsValue {
+    values.into_boxed_slice().into()
+}
+
+/// A `Uint8Array`.
+fn js_bytes(bytes: Vec<u8>) -> JsValue {
+    bytes.into_boxed_slice().into()
 }
