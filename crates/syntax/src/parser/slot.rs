@@ -9,8 +9,8 @@ use std::cmp::Ordering;
 use chumsky::DefaultExpected;
 use chumsky::IterParser;
 use chumsky::error::{Error, LabelError};
-use chumsky::input::MapExtra;
-use chumsky::prelude::{Parser, any, choice, empty, end, just, via_parser};
+use chumsky::input::{InputRef, MapExtra};
+use chumsky::prelude::{Parser, any, choice, custom, empty, end, just, via_parser};
 use chumsky::primitive::select;
 use chumsky::util::MaybeRef;
 
@@ -18,6 +18,9 @@ use super::expectation::Expectation;
 use super::{Extra, Input, Rule};
 use crate::ast::{Name, Number, References};
 use crate::{EntityKind, Expected, Quantity, Span, TokenKind, TokenSet};
+
+/// The tokens that are left.
+type Tokens<'s, 'p> = InputRef<'s, 'p, Input<'s>, Extra<'s>>;
 
 /// A fault that a rule reports while it runs; [`super::errors`] makes errors of it.
 #[derive(Debug, Clone, PartialEq)]
@@ -138,14 +141,14 @@ fn slot_passing<'s, O: 's>(
     first: TokenSet,
     later: TokenSet,
 ) -> Rule<'s, Option<O>> {
-    slot_or(passed, part.map(Some), empty().map(|()| None), first, later)
+    slot_or(passed, part.map(Some).boxed(), empty().map(|()| None).boxed(), first, later)
 }
 
-/// `part`, or `otherwise` and a fault.
+/// `part`, or `otherwise` and a fault. Both are boxed, or else all of this would be compiled for each of the many rules.
 fn slot_or<'s, O: 's>(
     passed: TokenSet,
-    part: impl Parser<'s, Input<'s>, O, Extra<'s>> + Clone + 's,
-    otherwise: impl Parser<'s, Input<'s>, O, Extra<'s>> + Clone + 's,
+    part: Rule<'s, O>,
+    otherwise: Rule<'s, O>,
     first: TokenSet,
     later: TokenSet,
 ) -> Rule<'s, O> {
@@ -169,7 +172,7 @@ pub(super) fn braced<'s, O: Default + 's>(
     });
     let otherwise = choice((is_closed.ignore_then(rest.clone()), empty().map(|()| O::default())));
     let part = just(TokenKind::OpenBrace).ignore_then(rest);
-    slot_or(ANY.without(later.and(ACTION_WORDS)), part, otherwise, OPEN, later)
+    slot_or(ANY.without(later.and(ACTION_WORDS)), part.boxed(), otherwise.boxed(), OPEN, later)
 }
 
 /// Where the list of a condition is not there: before the brace that closes what it is in, and, where a block follows it,
@@ -231,13 +234,33 @@ fn looks_like(token: TokenKind, span: Span, text: &str, word: TokenKind) -> bool
 
 /// Passes over tokens up to one of `until` or the end, and says which.
 fn skip_to<'s>(until: TokenSet) -> impl Parser<'s, Input<'s>, (), Extra<'s>> + Clone {
-    skip_some(until).or_not().ignored()
+    custom(move |input: &mut Tokens<'s, '_>| {
+        pass_over(input, until);
+        Ok(())
+    })
 }
 
 /// Like [`skip_to`], but there must be something to pass over.
 pub(super) fn skip_some<'s>(until: TokenSet) -> impl Parser<'s, Input<'s>, (), Extra<'s>> + Clone {
-    let skipped = any().filter(move |token: &TokenKind| !until.or(CURSOR).has(*token));
-    reported(skipped.repeated().at_least(1))
+    custom(move |input: &mut Tokens<'s, '_>| {
+        let begin = input.cursor();
+        if pass_over(input, until) { Ok(()) } else { Err(Fault::nothing(input.span_since(&begin))) }
+    })
+}
+
+/// Passes over tokens up to one of `until` or the end, says which, and returns whether there were any. A function instead of
+/// parsers: nearly every rule has it, and would contain those.
+#[inline(never)]
+fn pass_over(input: &mut Tokens<'_, '_>, until: TokenSet) -> bool {
+    let begin = input.cursor();
+    while input.peek().is_some_and(|token| !until.or(CURSOR).has(token)) {
+        input.skip();
+    }
+    let passed = input.span_since(&begin);
+    if !passed.is_empty() {
+        input.emit(Fault::Skipped(passed));
+    }
+    !passed.is_empty()
 }
 
 /// Like [`skip_some`], but a list in braces is passed over whole: its closing brace closes nothing else.
@@ -260,14 +283,8 @@ fn skip_lists_and<'s>(
     let list =
         just(TokenKind::OpenBrace).ignore_then(inside).then_ignore(just(TokenKind::CloseBrace)).ignored();
     let other = any().filter(move |token: &TokenKind| !until.or(CURSOR).has(*token)).ignored();
-    reported(choice((list, other)).repeated().at_least(1))
-}
-
-/// Passes over tokens, and says which.
-fn reported<'s, O>(
-    skipped: impl Parser<'s, Input<'s>, O, Extra<'s>> + Clone,
-) -> impl Parser<'s, Input<'s>, (), Extra<'s>> + Clone {
-    skipped.validate(|_, extra, emitter| emitter.emit(Fault::Skipped(extra.span())))
+    let skipped = choice((list, other)).repeated().at_least(1);
+    skipped.validate(|(), extra, emitter| emitter.emit(Fault::Skipped(extra.span())))
 }
 
 /// Passes over one token of `set` that is right before one of `next`.
@@ -275,7 +292,20 @@ pub(super) fn skip_before<'s>(
     set: TokenSet,
     next: TokenSet,
 ) -> impl Parser<'s, Input<'s>, (), Extra<'s>> + Clone {
-    reported(one_in(set).then_ignore(one_in(next).rewind()))
+    custom(move |input: &mut Tokens<'s, '_>| pass_one_over(input, set, next))
+}
+
+#[inline(never)]
+fn pass_one_over(input: &mut Tokens<'_, '_>, set: TokenSet, next: TokenSet) -> Result<(), Fault> {
+    let begin = input.cursor();
+    let first = input.next();
+    let passed = input.span_since(&begin);
+    let is_in = |token: Option<TokenKind>, set: TokenSet| token.is_some_and(|token| set.has(token));
+    if !is_in(first, set) || !is_in(input.peek(), next) {
+        return Err(Fault::nothing(passed));
+    }
+    input.emit(Fault::Skipped(passed));
+    Ok(())
 }
 
 /// One of the tokens of a set.
