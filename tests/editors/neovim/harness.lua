@@ -11,7 +11,8 @@ function M.sleep(milliseconds)
   coroutine.yield()
 end
 
---- Waits until `condition` returns something, and returns it. The limit is for machines that do other work.
+--- Waits until `condition` returns something, and returns it. The limit is for machines that do other work; it fails the session
+--- whether or not the test looks at the result: otherwise, a wait in vain would only be slow.
 function M.wait(condition)
   local deadline = vim.uv.hrtime() + 60e9
   while vim.uv.hrtime() < deadline do
@@ -19,7 +20,7 @@ function M.wait(condition)
     if value then return value end
     M.sleep(10)
   end
-  return condition()
+  M.check(('the wait in line %d ends'):format(debug.getinfo(2, 'l').currentline), false)
 end
 
 function M.check(what, holds, seen)

@@ -43,8 +43,12 @@ lua_block() { # call, address; prints the readme's first block of Lua with this 
   ' "$plugin/README.md" | sed "s|/path/to/pydslrep|${2:-$repository}|"
 }
 
-alive() { # zombies do not count
-  case $(ps -o stat= -p "$1" || true) in "" | Z*) return 1 ;; esac
+gone() { # process; waits until it has ended, zombies do not count
+  for _ in {1..600}; do
+    case $(ps -o stat= -p "$1" || true) in "" | Z*) return 0 ;; esac
+    sleep 0.1
+  done
+  return 1
 }
 
 session() { # name, Neovim, file; reads init.lua from standard input
@@ -66,7 +70,7 @@ session() { # name, Neovim, file; reads init.lua from standard input
   ) || failed=1
   local server_id
   server_id=$(cat "$home/server.pid" 2>/dev/null || true)
-  if [ -n "$server_id" ] && ! alive "$server_id"; then
+  if [ -n "$server_id" ] && gone "$server_id"; then
     echo "ok   the server exits with Neovim"
   else
     echo "FAIL the server exits with Neovim"
