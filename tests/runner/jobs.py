@@ -219,11 +219,12 @@ def in_editors() -> list[Job]:
     ]
 
 
-# What begins last: parts that keep both processors of a small machine busy together.
+# What begins last: parts that keep both processors of a small machine busy together, the long ones before those that are
+# quick where everything is built.
 LATE = (
     *("python", "vscode"),
-    *("typing", "rust"),
-    *("clippy", "playground"),
+    *("typing", "playground"),
+    *("rust", "clippy"),
     *("preview", "neovim", "documentation", "web"),
 )
 
