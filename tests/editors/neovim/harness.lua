@@ -11,8 +11,8 @@ function M.sleep(milliseconds)
   coroutine.yield()
 end
 
---- Waits until `condition` returns something, and returns it. The limit is for machines that do other work; it fails the session
---- whether or not the test looks at the result: otherwise, a wait in vain would only be slow.
+--- Waits until `condition` returns something, and returns it. The limit is for machines that do other work. Reaching it
+--- fails the session, even if the test does not look at the result: otherwise, a wait in vain would only be slow.
 function M.wait(condition)
   local deadline = vim.uv.hrtime() + 60e9
   while vim.uv.hrtime() < deadline do
