@@ -141,14 +141,13 @@ fn slot_passing<'s, O: 's>(
     first: TokenSet,
     later: TokenSet,
 ) -> Rule<'s, Option<O>> {
-    slot_or(passed, part.map(Some).boxed(), empty().map(|()| None), first, later)
+    slot_or(passed, part.map(Some), empty().map(|()| None), first, later)
 }
 
-/// `part`, or `otherwise` and a fault. All of this is compiled once per type of them, so `part`, which is mostly another one,
-/// is boxed.
+/// `part`, or `otherwise` and a fault.
 fn slot_or<'s, O: 's>(
     passed: TokenSet,
-    part: Rule<'s, O>,
+    part: impl Parser<'s, Input<'s>, O, Extra<'s>> + Clone + 's,
     otherwise: impl Parser<'s, Input<'s>, O, Extra<'s>> + Clone + 's,
     first: TokenSet,
     later: TokenSet,
@@ -173,7 +172,7 @@ pub(super) fn braced<'s, O: Default + 's>(
     });
     let otherwise = choice((is_closed.ignore_then(rest.clone()), empty().map(|()| O::default())));
     let part = just(TokenKind::OpenBrace).ignore_then(rest);
-    slot_or(ANY.without(later.and(ACTION_WORDS)), part.boxed(), otherwise, OPEN, later)
+    slot_or(ANY.without(later.and(ACTION_WORDS)), part, otherwise, OPEN, later)
 }
 
 /// Where the list of a condition is not there: before the brace that closes what it is in, and, where a block follows it,
