@@ -13,5 +13,4 @@ python=$(tests/ros/install.sh kilted)
 [[ -n $python ]] || exit 0
 export PYTHONPATH=$PWD/python:$PWD/tests/support
 cd tests/ros
-# They wait for most of the time, each in a domain of its own.
-exec "$python" -m pytest -n 4 "$@"
+exec "$python" -m pytest "$@"
