@@ -89,6 +89,13 @@ def prepared(editors: bool) -> list[Job]:
                 cargo=True,
                 prepares=True,
             ),
+            # Once for all parts that open it.
+            Job(
+                "playground-build",
+                (f"{NODE} npm run --silent --prefix editors/playground build",),
+                after=("tools", "editors", "web-build"),
+                prepares=True,
+            ),
             Job(
                 "packages",
                 (
@@ -192,11 +199,12 @@ def in_editors() -> list[Job]:
             "packages",
             read=results.of_node_in(f"{editor} vscode", in_sessions=True),
         ),
-        job("playground", f"{editor} playground", "web-build"),
+        job("playground", f"{editor} playground", "playground-build"),
         job(
             "typing",
             f"{packages} {editor} typing --patient ${{LONG:+--all}}",
             "packages",
+            "playground-build",
             read=results.of_typing,
         ),
         job("preview", f"{editor} preview"),

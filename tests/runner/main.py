@@ -79,6 +79,7 @@ def variables(long: bool) -> dict[str, str]:
         "PYDSLREP_LSP": str(jobs.BUILT / "pydslrep-lsp"),
         "RANDOM_PROGRAMS": str(jobs.BUILT / "random-programs"),
         "PYDSLREP_WEB": str(jobs.ROOT / "editors/web/dist"),
+        "PYDSLREP_PLAYGROUND": str(jobs.ROOT / "editors/playground/dist"),
     }
     if long:
         found |= {"LONG": "1", **AMOUNTS}

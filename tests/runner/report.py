@@ -19,7 +19,7 @@ def line(outcome: Outcome) -> str:
     """One line about a job."""
     verdict = "ok" if outcome.succeeded else "not run" if outcome.missing else "FAILED"
     time = "" if outcome.missing else times(outcome)
-    return f"{outcome.job.name:<14}{verdict:<8}{counted(outcome.results):<28}{time}"
+    return f"{outcome.job.name:<17}{verdict:<8}{counted(outcome.results):<28}{time}"
 
 
 def times(outcome: Outcome) -> str:

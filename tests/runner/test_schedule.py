@@ -114,6 +114,16 @@ def test_the_check_for_a_browser_runs_where_no_build_for_one_does() -> None:
     assert "wasm" not in names() | names(editors=True, long=True)
 
 
+def test_parts_that_run_together_share_one_build_of_the_playground() -> None:
+    for name in ("playground", "typing"):
+        alone = {job.name for job in jobs.chosen([name], editors=False, long=False)}
+        assert "playground-build" in alone
+    builds = [
+        job.name for job in jobs.every() if "playground build" in " ".join(job.commands)
+    ]
+    assert builds == ["playground-build"]
+
+
 def test_what_hangs_is_ended_with_its_processes_and_named(tmp_path: Path) -> None:
     hang = Job("hang", ("sleep 1000 & echo $! >pid; wait",))
     outcome = runner(tmp_path, tmp_path, {"PATH": "/usr/bin:/bin"}, limit=0.3)(hang)

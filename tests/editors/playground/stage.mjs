@@ -7,7 +7,7 @@ import path from "node:path";
 import { chromium } from "playwright-core";
 
 export const ROOT = path.resolve(import.meta.dirname, "../../..");
-export const DIST = path.join(ROOT, "editors/playground/dist");
+export const DIST = process.env.PYDSLREP_PLAYGROUND || path.join(ROOT, "editors/playground/dist");
 export const OUT = path.join(import.meta.dirname, "out");
 /** Where pictures for the documentation go. */
 export const PICTURES = process.env.UPDATE_EXPECT ? path.join(ROOT, "docs/images/playground") : OUT;
