@@ -13,19 +13,23 @@ const ORIGIN = "http://preview.test";
 
 const esbuild = createRequire(path.join(EXTENSION, "package.json"))("esbuild");
 
-/** A module of an editor's folder, bundled for Node. */
-export async function moduleOf(file) {
-  const { outputFiles } = await esbuild.build({
-    entryPoints: [path.join(ROOT, "editors", file)],
-    bundle: true,
-    write: false,
-    platform: "node",
-    format: "esm",
-  });
-  return import(`data:text/javascript;base64,${Buffer.from(outputFiles[0].contents).toString("base64")}`);
+/** A file of an editor's folder, bundled. */
+async function bundleOf(file, options) {
+  const entryPoints = [path.join(ROOT, "editors", file)];
+  const { outputFiles } = await esbuild.build({ entryPoints, bundle: true, write: false, ...options });
+  return Buffer.from(outputFiles[0].contents);
 }
 
+/** A module of an editor's folder, bundled for Node. */
+export async function moduleOf(file) {
+  const bundle = await bundleOf(file, { platform: "node", format: "esm" });
+  return import(`data:text/javascript;base64,${bundle.toString("base64")}`);
+}
+
+// Not from the extension's dist/: what packs the extension at the same time builds that again.
 const { page: html } = await moduleOf("vscode/src/preview/page.ts");
+const SCRIPT = await bundleOf("vscode/webview/preview.ts", { platform: "browser", format: "iife" });
+const STYLE = readFileSync(path.join(ROOT, "editors", "preview", "page", "style.css"));
 
 export function launch() {
   return chromium.launch({ executablePath: process.env.CHROMIUM, args: ["--no-sandbox"] });
@@ -70,8 +74,8 @@ export class Panel {
     }, state);
     const files = {
       "/": { contentType: "text/html", body: html({ source: ORIGIN, script: "/preview.js", style: "/preview.css", nonce: "abc" }) },
-      "/preview.js": { contentType: "text/javascript", body: readFileSync(path.join(EXTENSION, "dist", "preview.js")) },
-      "/preview.css": { contentType: "text/css", body: readFileSync(path.join(EXTENSION, "dist", "preview.css")) },
+      "/preview.js": { contentType: "text/javascript", body: SCRIPT },
+      "/preview.css": { contentType: "text/css", body: STYLE },
     };
     await page.route("**/*", (route) => {
       const file = files[new URL(route.request().url()).pathname];

@@ -15,7 +15,6 @@ if [ ! -x "$PYDSLREP_LSP" ] || [ ! -x "$(dirname "$PYDSLREP_LSP")/pydslrep" ]; t
   (cd "$root" && cargo build --quiet --locked --bin pydslrep --bin pydslrep-lsp)
 fi
 "$root/tests/install/npm.sh" "$root/editors/vscode" "$here"
-npm run --silent --prefix "$root/editors/vscode" build
 cd "$here"
 [ $# -gt 0 ] || set -- *.test.mjs
 exec node --test --test-timeout=1200000 --test-reporter=spec "$@"
