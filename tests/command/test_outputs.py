@@ -14,7 +14,7 @@ import pytest
 PROGRAM = """\
 wheel a with radius 4
 wheel b with radius 4
-robot r with port 47361 has { a b } wheels
+robot r with port 18361 has { a b } wheels
 movement m of r { move 10 centimeters }
 environment yard has { r } robots with { m } moves
 """
@@ -22,7 +22,7 @@ SLAM = """\
 sensor s1 sensor s2 sensor s3 sensor s4 sensor s5
 wheel a with radius 4
 wheel b with radius 4
-robot r with port 47362 has { a b } wheels with sensors { s1 s2 s3 s4 s5 }
+robot r with port 18362 has { a b } wheels with sensors { s1 s2 s3 s4 s5 }
 movement m of r { slam }
 environment cave has { r } robots with { m } moves
 """

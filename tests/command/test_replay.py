@@ -32,7 +32,7 @@ wheel a with radius 4
 wheel b with radius 4
 sensor front : distance
 sensor skirt : bumper
-robot rover with port 47363 has { a b } wheels with sensors { front, skirt }
+robot rover with port 18363 has { a b } wheels with sensors { front, skirt }
 movement m of rover {
   move 60 centimeters until { skirt, front } detect
   turn left 90

@@ -1,4 +1,4 @@
-"""Examples that people copy use CoppeliaSim's port."""
+"""Examples that people copy use CoppeliaSim's port, and tests use ports that no other program is given."""
 
 import re
 import tomllib
@@ -76,3 +76,21 @@ def test_the_script_names_the_same_ports() -> None:
         r"^(?:DEFAULT|LEGACY)_PORT = (\d+)", part.read_text("utf-8"), re.M
     )
     assert list(map(int, named)) == sorted(set(default_ports().values()), reverse=True)
+
+
+def test_tests_use_no_ports_that_a_system_gives_away() -> None:
+    # Where tests simulate programs. These may be the ports of any connection (FIRST_PORT in support/ports.py).
+    given_away = range(32_768, 65_536)
+    folders = ("crates/cli/tests", "tests/command", "tests/scripts", "tests/article")
+    files = [
+        path for folder in folders for path in sorted((ROOT / folder).rglob("*.*"))
+    ]
+    named = {
+        f"{path.relative_to(ROOT)}: {port}"
+        for path in files
+        if path.suffix in {".rs", ".py", ".pyr"}
+        for port in ports(path)
+        if port in given_away
+    }
+    assert not named
+    assert sum(bool(ports(path)) for path in files if path.suffix == ".rs") >= 3

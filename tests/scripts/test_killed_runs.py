@@ -14,7 +14,7 @@ from until import LIMIT, until
 PROGRAM = """\
 wheel a with radius 4
 wheel b with radius 4
-robot r with port 47371 has { a b } wheels
+robot r with port 18371 has { a b } wheels
 movement m of r { move 1 meters turn left move 1 meters turn left move 1 meters }
 environment yard has { r } robots with { m } moves
 """

@@ -366,7 +366,7 @@ fn robots_of_ones_own_need_no_simulator() {
 fn a_robot_of_ones_own_drives_beside_a_simulated_one() {
     let program = "\
 wheel a with radius 4 wheel b with radius 4
-robot scout with port 47321 has { a b } wheels robot guard with port 47322 has { a b } wheels
+robot scout with port 18321 has { a b } wheels robot guard with port 18322 has { a b } wheels
 parallel movement m of scout { move 30 centimeters } parallel movement n of guard { move 40 centimeters }
 environment yard has { scout guard } robots with { m n } moves";
     let place = Place::with("x.pyr", program);

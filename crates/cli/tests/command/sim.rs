@@ -26,7 +26,7 @@ fn said(program: &str, arguments: &[&str], expected: &Expect) {
 }
 
 const PROGRAM: &str = "\
-wheel a with radius 4 wheel b with radius 4 robot r with port 47311 has { a b } wheels
+wheel a with radius 4 wheel b with radius 4 robot r with port 18311 has { a b } wheels
 movement m of r { move 10 centimeters } environment yard has { r } robots with { m } moves";
 
 #[test]
@@ -37,7 +37,7 @@ fn it_says_that_it_is_ready_and_what_to_do() {
         &expect![[r#"
         robot  address    port
         ────────────────────────
-        r      127.0.0.1  47311
+        r      127.0.0.1  18311
 
         Ready. Press Ctrl+C to stop.
         To drive in it, run this in another terminal:
@@ -51,14 +51,14 @@ fn it_says_that_it_is_ready_and_what_to_do() {
 #[test]
 fn a_script_of_another_machine_is_told_where_to_go() {
     let elsewhere =
-        PROGRAM.replace("47311", "47312").replace("yard has", "yard with ip lab has") + " ip lab 10.0.0.7";
+        PROGRAM.replace("18311", "18312").replace("yard has", "yard with ip lab has") + " ip lab 10.0.0.7";
     said(
         &elsewhere,
         &["my programs/x.pyr", "--listen", "0.0.0.0"],
         &expect![[r#"
         robot  address  port
         ──────────────────────
-        r      0.0.0.0  47312
+        r      0.0.0.0  18312
 
         Ready. Press Ctrl+C to stop.
         To drive in it, run this in another terminal:
