@@ -116,6 +116,8 @@ class Link:
         """Waits until everybody has what these published last, and leaves."""
         for publisher in publishers:
             publisher.wait_for_all_acked(Duration(seconds=LAST_WORDS))
+        # What it waits for belongs to the context, and must not outlive it until Python ends.
+        self._executor.shutdown()
         self._node.destroy_node()
         rclpy.try_shutdown()
 
