@@ -131,7 +131,10 @@ def checks() -> list[Job]:
         Job("rustfmt", ("cargo fmt --all --check",)),
         Job(
             "python",
-            (f"{NODE} .venv/bin/pytest -n 4 --durations=10 ${{LONG:+--long}}",),
+            (
+                # Otherwise one process ends long after the others: the slowest tests follow one another.
+                f"{NODE} .venv/bin/pytest -n 4 --dist worksteal --durations=10 ${{LONG:+--long}}",
+            ),
             after=("tools", "build"),
             # It counts as one processor: its four processes wait half of the time, for scripts, simulators and servers.
             read=results.of_pytest,
