@@ -155,9 +155,7 @@ def checks() -> list[Job]:
         ),
         Job(
             "clippy",
-            (
-                "cargo clippy --workspace --all-targets --locked --quiet -- --deny warnings",
-            ),
+            ("tests/runner/clippy.sh",),
             after=("build",),
             processors=2,
             cargo=True,

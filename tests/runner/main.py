@@ -86,6 +86,9 @@ def variables(long: bool) -> dict[str, str]:
     if "CI" in found:
         # Only the next build would save what incremental compilation costs, and nobody is there to read debug information.
         found |= {"CARGO_INCREMENTAL": "0", "CARGO_PROFILE_DEV_DEBUG": "false"}
+        # Clippy looks at crates while they are compiled, and not at all of them and their dependencies a second time.
+        # Elsewhere, people build without it, and would compile all crates again.
+        found |= {"RUSTC_WORKSPACE_WRAPPER": "clippy-driver"}
     return found
 
 
