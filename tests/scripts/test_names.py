@@ -17,6 +17,8 @@ import subprocess
 import sys
 from collections.abc import Sequence
 
+import mypy_cache
+
 ROOT = pathlib.Path(__file__).parents[2]
 
 # Robots of every type, sensors, an address, movements in sequence and in parallel. Tests rename `W3` and the like; `^`
@@ -140,7 +142,10 @@ def pass_tools(scripts: Sequence[pathlib.Path], folder: pathlib.Path) -> None:
     for arguments in (
         ["ruff", "check", "--isolated", "--no-cache", "."],
         ["ruff", "format", "--isolated", "--no-cache", "--check", "."],
-        ["mypy", "--strict", "--python-version", "3.11", "--config-file=", "."],
+        [
+            *("mypy", "--strict", "--python-version", "3.11", "--config-file="),
+            *(mypy_cache.option(), "."),
+        ],
     ):
         done = subprocess.run(
             [sys.executable, "-m", *arguments],

@@ -14,6 +14,7 @@ import textwrap
 from collections.abc import Callable
 from typing import Any
 
+import mypy_cache
 import pytest
 
 ROOT = pathlib.Path(__file__).parents[2]
@@ -166,7 +167,7 @@ def test_the_module_passes_ruff_and_mypy(
     for arguments in (
         # The second block of the page imports where it begins.
         ["ruff", "check", "--ignore=E402", "--isolated", "--no-cache", "my_robot.py"],
-        ["mypy", "--strict", "--config-file=", "my_robot.py"],
+        ["mypy", "--strict", "--config-file=", mypy_cache.option(), "my_robot.py"],
     ):
         done = subprocess.run(
             [sys.executable, "-m", *arguments],
