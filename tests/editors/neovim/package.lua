@@ -348,6 +348,9 @@ end
 local function lenses()
   open_program('square.pyr', PROGRAM)
   if not vim.lsp.codelens.enable then return end
+  -- Neovim 0.12 asks for the lenses of a file that it has just opened once more. If it draws the first answer while the
+  -- second arrives, it leaves those unresolved. So this waits until the server has opened the file.
+  wait(function() return #vim.diagnostic.get(0) > 0 end)
   vim.lsp.codelens.enable(true, { bufnr = 0 })
   go_to('mov_1 of')
   local function count()
