@@ -9,8 +9,10 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
+
+# Its parts load when they are used; statistics take a second, in every process that collects tests.
+import scipy
 from numpy.typing import NDArray
-from scipy import stats
 
 FIGURES = pathlib.Path(__file__).with_name("evaluation.csv")
 TOOLS = {"python": "Python", "pydslrep": "PyDSLRep"}
@@ -128,12 +130,12 @@ def saved(first: Sample, second: Sample) -> float:
 
 def critical(level: float) -> float:
     """What a score exceeds by chance with that probability."""
-    return float(stats.t.isf(level, DEGREES))
+    return float(scipy.stats.t.isf(level, DEGREES))
 
 
 def chance(value: float) -> float:
     """How probable a score of at least that is by chance."""
-    return float(stats.t.sf(value, DEGREES))
+    return float(scipy.stats.t.sf(value, DEGREES))
 
 
 def means_table() -> str:
@@ -179,7 +181,7 @@ def scores_table() -> str:
     for key, (python, pydslrep) in pairs(subjects()).items():
         printed = SCORES[key]
         again = score(python.seconds, pydslrep.seconds)
-        welch = stats.ttest_ind(python.seconds, pydslrep.seconds, equal_var=False)
+        welch = scipy.stats.ttest_ind(python.seconds, pydslrep.seconds, equal_var=False)
         lines.append(
             f"| {key[0]} | {key[1]} | {printed.score:.4f} | {again:.4f} | {printed.critical:.5g} "
             f"| {chance(again):.1e} | {float(welch.statistic):.2f} | {float(welch.pvalue):.1e} |"

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -138,6 +139,7 @@ def of_tests(path: Path) -> list[str]:
     return [] if begin is None else lines[begin:]
 
 
+@cache
 def found() -> dict[str, list[str]]:
     """By file, the lines of tests that pause or read a clock."""
     suspects: dict[str, list[str]] = {}
@@ -149,9 +151,6 @@ def found() -> dict[str, list[str]]:
             if re.search(SUSPECT[path.suffix], line):
                 suspects.setdefault(name, []).append(line.strip())
     return suspects
-
-
-FOUND = found()
 
 
 def uses(name: str, line: str) -> list[tuple[str, str]]:
@@ -168,7 +167,7 @@ def uses(name: str, line: str) -> list[tuple[str, str]]:
 def test_no_test_pauses_or_reads_a_clock() -> None:
     refused = [
         f"{name}: {line}"
-        for name, lines in FOUND.items()
+        for name, lines in found().items()
         for line in lines
         if not uses(name, line)
     ]
@@ -179,7 +178,7 @@ def test_no_test_pauses_or_reads_a_clock() -> None:
 def test_what_is_allowed_is_used() -> None:
     used = {
         use
-        for name, lines in FOUND.items()
+        for name, lines in found().items()
         for line in lines
         for use in uses(name, line)
     }
