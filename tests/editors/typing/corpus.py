@@ -18,8 +18,8 @@ SIZE = 12
 TRIED = 150
 # A line at the third depth: in a block of a block.
 NESTED = "\n" + 6 * " "
-# The programs of the test command: comments, nested blocks with conditions, similar names, one as the article prints it.
-FEW = ("comments", "nested_027", "names_few_tab", "table2_two_wheels_printed")
+# The programs of the test command: comments and nested blocks, similar names, one as the article prints it.
+FEW = ("comments", "names_few_tab", "table2_two_wheels_printed")
 # Its syntax errors leave it without a layout.
 WITHOUT_LAYOUT = ("11-recovery",)
 # How many programs have similar names, and how many letters these begin with; in the test command, fewer.
