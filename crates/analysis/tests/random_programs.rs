@@ -89,7 +89,7 @@ fn compare(said: &BTreeSet<Finding>, verdict: Verdict) -> Result<(), TestCaseErr
 }
 
 fn how_many() -> u32 {
-    std::env::var("PYDSLREP_PROGRAMS").ok().and_then(|count| count.parse().ok()).unwrap_or(700)
+    std::env::var("PYDSLREP_PROGRAMS").ok().and_then(|count| count.parse().ok()).unwrap_or(350)
 }
 
 proptest! {

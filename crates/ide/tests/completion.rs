@@ -13,7 +13,7 @@ use pydslrep_ide::{
 use pydslrep_syntax::{Found, KEYWORDS, Span, SyntaxErrorKind, Token, TokenKind, cut, lex, parse};
 
 /// How many random programs are tried by default.
-const COMPLETED: u64 = 40;
+const COMPLETED: u64 = 20;
 
 /// The paper's programs and variants of them.
 fn paper_programs() -> Vec<String> {

@@ -411,10 +411,10 @@ fn lost_by_typing(whole: &str, start: usize, content: &str) -> Option<String> {
     None
 }
 
-/// Types every third line of each example; with `LONG`, every line.
+/// Types every sixth line of each example; with `LONG`, every line.
 #[test]
 fn typing_any_line_of_any_example_removes_no_hints() {
-    let one_in = if std::env::var_os("LONG").is_some() { 1 } else { 3 };
+    let one_in = if std::env::var_os("LONG").is_some() { 1 } else { 6 };
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let files = ["tests/paper", "examples"].map(|folder| std::fs::read_dir(root.join(folder)).unwrap());
     let files = files.into_iter().flatten().map(|entry| entry.unwrap().path());
