@@ -13,8 +13,14 @@ folder=${profile/#dev/debug}
 cd "$root"
 cargo build --quiet --locked --package pydslrep-browser --target wasm32-unknown-unknown --profile "$profile"
 cargo build --quiet --locked --manifest-path "$here/bindgen/Cargo.toml" --target-dir "$target"
-rm -rf "$here/dist"
-"$target/debug/pydslrep-bindgen" "$target/wasm32-unknown-unknown/$folder/pydslrep_browser.wasm" "$here/dist"
+compiled=$target/wasm32-unknown-unknown/$folder/pydslrep_browser.wasm bindgen=$target/debug/pydslrep-bindgen
+# The hashes of what the module was made from, and of what was made: it takes ten seconds, and most runs would make it again.
+made=$target/web-module.sha256
+if ! grep -qF "$compiled" "$made" 2>/dev/null || ! sha256sum --check --status "$made" 2>/dev/null; then
+  rm -rf "$here/dist" "$made"
+  "$bindgen" "$compiled" "$here/dist"
+  sha256sum "$compiled" "$bindgen" "$here"/dist/* >"$made"
+fi
 
 "$root/tests/install/npm.sh" "$here"
 PATH=$("$root/tests/install/node.sh"):$PATH
