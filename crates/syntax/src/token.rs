@@ -466,35 +466,3 @@ impl TokenSet {
         self.0 & (1 << token as u8) != 0
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_keyword_is_lexed_as_itself() {
-        for (token, word) in KEYWORDS {
-            assert_eq!(TokenKind::lexer(word).next(), Some(Ok(token)), "{word}");
-            let contextual = TokenKind::CONTEXTUAL.contains(&token);
-            assert_eq!(token.is_keyword(), !contextual, "{word}");
-            assert_eq!(token.is_name(), contextual, "{word}");
-        }
-    }
-
-    #[test]
-    fn every_type_of_robot_has_its_keyword() {
-        assert_eq!(TokenKind::DRIVES.map(TokenKind::drive), Drive::ALL.map(Some));
-        for (token, word) in KEYWORDS {
-            assert_eq!(token.drive().is_some(), TokenKind::DRIVES.contains(&token), "{word}");
-        }
-    }
-
-    #[test]
-    fn the_list_is_complete() {
-        let first = TokenKind::Wheel as u8;
-        let listed: Vec<u8> = KEYWORDS.iter().map(|(token, _)| *token as u8).collect();
-        let all: Vec<u8> = (first..TokenKind::Invalid as u8).collect();
-        assert_eq!(listed, all);
-        assert!((TokenKind::Cursor as u8) < 128, "a token set is one word");
-    }
-}

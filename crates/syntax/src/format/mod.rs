@@ -113,6 +113,3 @@ fn blank_between(previous: Option<&Item>, next: Option<&Item>, gap: &Gap<'_>) ->
         (true, false) => Blank::Never,
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -214,6 +214,3 @@ fn rule_for<'s>(first: TokenKind, again: bool) -> (usize, Build<'s>) {
         None => (0, || components::preamble()),
     }
 }
-
-#[cfg(test)]
-mod tests;

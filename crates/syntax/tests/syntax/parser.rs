@@ -2,9 +2,8 @@
 
 use expect_test::{Expect, expect};
 use proptest::prelude::*;
-
-use super::*;
-use crate::ast::{Action, ActionKind, Block, Condition, References, Within};
+use pydslrep_syntax::ast::{Action, ActionKind, Block, Condition, Entity, References, Within};
+use pydslrep_syntax::{EntityKind, KEYWORDS, TokenKind, expected_after, lex, parse};
 
 fn list(refs: Option<&References>) -> String {
     let Some(refs) = refs else { return "-".to_owned() };
@@ -422,7 +421,7 @@ proptest! {
 
 fn any_text() -> impl Strategy<Value = String> {
     let word = prop_oneof![
-        6 => proptest::sample::select(crate::KEYWORDS.map(|(_, word)| word).to_vec()).prop_map(str::to_owned),
+        6 => proptest::sample::select(KEYWORDS.map(|(_, word)| word).to_vec()).prop_map(str::to_owned),
         4 => proptest::sample::select(vec![
             "{", "}", ",", ":", "/*", "*/", "//", "\"", "\n", "\r", "^", "-", ".", "a", "b1", "4.5", "90", "1.2.3.4", "movment", "Wheel", "sensr", "Import", "a-1", "robot-1", "-1a", "é", "🤖", "\u{feff}",
         ])

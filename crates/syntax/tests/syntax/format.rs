@@ -2,9 +2,7 @@
 
 use expect_test::{Expect, expect};
 use proptest::prelude::*;
-
-use super::*;
-use crate::lex;
+use pydslrep_syntax::{KEYWORDS, Span, TokenKind, format, format_edits, lex, parse};
 
 fn check(text: &str, expected: &Expect) {
     let formatted = format(text);
@@ -515,7 +513,7 @@ proptest! {
 
 fn token_soup() -> impl Strategy<Value = String> {
     let word = prop_oneof![
-        6 => proptest::sample::select(crate::KEYWORDS.map(|(_, word)| word).to_vec()).prop_map(str::to_owned),
+        6 => proptest::sample::select(KEYWORDS.map(|(_, word)| word).to_vec()).prop_map(str::to_owned),
         4 => proptest::sample::select(vec![
             "{", "}", ",", ":", "/*", "*/", "//", "\"", "\n", "\r", "\r\n", "\n\n", "^", "-", ".", "a", "b1", "4.5",
             "90", "1.2.3.4", "é", "🤖", "\u{feff}",
