@@ -17,7 +17,10 @@ const PYTHON: &str = r#"#!/bin/sh
 case "$*" in
   "-c "*) echo 3.12.0; echo "$0" ;;
   "-I -c "*) . "$INDEX" ;;
-  "-I -m venv "*) mkdir -p "$4/bin"; cp "$0" "$4/bin/python" ;;
+  "-I -m venv --without-pip "*) mkdir -p "$5/bin"; cp "$0" "$5/bin/python" ;;
+  "-I -m pip --python "*" --version") exit ${BASE_PIP_CODE:-0} ;;
+  "-I -m ensurepip") touch "$0-has-pip"; exit ${ENSUREPIP_CODE:-0} ;;
+  "-I -m pip install "*) [ -e "$0-has-pip" ] ;;
   "-I -m pip "*) exit ${PIP_CODE:-0} ;;
   *) . "$BEHAVIOUR" ;;
 esac
@@ -161,6 +164,23 @@ fn what_cannot_be_installed_is_explained() {
     assert_eq!(done.code, Some(2));
     assert!(done.err.contains("cannot install the CoppeliaSim client library"), "{}", done.err);
     assert!(done.err.contains("needs network access to PyPI"), "{}", done.err);
+    assert_eq!(cached(&place), ["lock"], "nothing half made is left");
+}
+
+#[test]
+fn where_python_has_no_pip_the_environment_gets_one() {
+    let place = place("");
+    let done: Done = command(&place).env("BASE_PIP_CODE", "1").output().unwrap().into();
+    assert_eq!(done.err, PREPARING);
+    let environment = cached(&place).into_iter().find(|name| name.starts_with("venv-")).unwrap();
+    assert!(place.path(&format!("cache/pydslrep/{environment}/bin/python-has-pip")).exists());
+
+    let place = self::place("");
+    let codes = [("BASE_PIP_CODE", "1"), ("ENSUREPIP_CODE", "1")];
+    let done: Done = command(&place).envs(codes).output().unwrap().into();
+    assert_eq!(done.code, Some(2));
+    assert!(done.err.contains("cannot create a virtual environment"), "{}", done.err);
+    assert!(done.err.contains("needs its modules venv and ensurepip"), "{}", done.err);
     assert_eq!(cached(&place), ["lock"], "nothing half made is left");
 }
 

@@ -135,20 +135,14 @@ impl Environment {
         let folder = tempfile::Builder::new().prefix(UNFINISHED).tempdir_in(&self.cache);
         let folder = folder.map_err(|error| uncached(&self.cache, &error))?;
         let mut venv = Command::new(&self.base.path);
-        venv.args(["-I", "-m", "venv"]).arg(folder.path());
-        succeed(&mut venv, CREATE_LIMIT).await.map_err(|reason| {
-            Failure::new(format!("cannot create a virtual environment: {reason}")).help(format!(
-                "{} needs its modules venv and ensurepip, e.g. `sudo apt install python3-venv`; or choose another Python \
-                 with --python PATH",
-                self.base.path.display()
-            ))
-        })?;
+        venv.args(["-I", "-m", "venv", "--without-pip"]).arg(folder.path());
+        succeed(&mut venv, CREATE_LIMIT).await.map_err(|reason| self.uncreated(&reason))?;
         self.show(steps, &format!("installing {}", self.packages.names));
         let requirements = folder.path().join("requirements.txt");
         fs::write(&requirements, self.packages.requirements.concat())
             .map_err(|error| uncached(&requirements, &error))?;
-        let mut pip = Command::new(python_in(folder.path()));
-        pip.args(["-I", "-m", "pip", "install", "--quiet", "--no-input", "--disable-pip-version-check"]);
+        let mut pip = self.pip(folder.path()).await?;
+        pip.args(["install", "--quiet", "--no-input", "--disable-pip-version-check"]);
         // Nothing but the packages that we know, and none of their code runs during the installation.
         pip.args(["--require-hashes", "--only-binary", ":all:", "--no-deps"]);
         // The index answered a moment ago.
@@ -156,6 +150,35 @@ impl Environment {
         succeed(&mut pip, INSTALL_LIMIT).await.map_err(|reason| uninstalled(self.packages, &reason))?;
         manifest::write(folder.path()).map_err(|error| uncached(folder.path(), &error))?;
         Ok(folder)
+    }
+
+    /// A pip that installs into an environment: that of the interpreter, where it has one. One in the environment takes longer
+    /// to install than the packages, and is used once.
+    async fn pip(&self, home: &Path) -> Result<Command, Failure> {
+        let of_base = || {
+            let mut pip = Command::new(&self.base.path);
+            pip.args(["-I", "-m", "pip", "--python"]).arg(python_in(home));
+            pip
+        };
+        // Before version 22.3, it knows no other environments than its own.
+        if succeed(of_base().arg("--version"), CREATE_LIMIT).await.is_ok() {
+            return Ok(of_base());
+        }
+        let module = |name| {
+            let mut python = Command::new(python_in(home));
+            python.args(["-I", "-m", name]);
+            python
+        };
+        succeed(&mut module("ensurepip"), CREATE_LIMIT).await.map_err(|reason| self.uncreated(&reason))?;
+        Ok(module("pip"))
+    }
+
+    fn uncreated(&self, reason: &str) -> Failure {
+        Failure::new(format!("cannot create a virtual environment: {reason}")).help(format!(
+            "{} needs its modules venv and ensurepip, e.g. `sudo apt install python3-venv`; or choose another Python \
+             with --python PATH",
+            self.base.path.display()
+        ))
     }
 
     fn show(&self, steps: &Steps<'_>, step: &str) {
