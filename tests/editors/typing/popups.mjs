@@ -1,11 +1,11 @@
 // Whether popups cover what is being typed.
 
 /** Frames after which a popup does not go away by itself, however slow the server is. */
-const STAYS = 600;
+export const STAYS = 600;
 
 /**
  * Types, and returns the seconds that it took with the popups that covered the line of the cursor, or the one above. If it is
- * `patient`, each key waits until they are gone (`uncovered`), and those that stay count.
+ * `patient`, each key waits until they are gone, and those that stay count.
  */
 export async function coverage(page, patient, typed) {
   await page.evaluate((patient) => {
@@ -14,28 +14,6 @@ export async function coverage(page, patient, typed) {
   }, patient);
   const seconds = await typed();
   return { seconds, covered: Object.values(await page.evaluate(() => globalThis.covered)) };
-}
-
-/**
- * Waits until no popup covers the line, after the answer of the server that closes or moves the one of the key before: a list
- * that was below a line is over it once that wraps.
- */
-export function uncovered(page) {
-  return page.evaluate(
-    (limit) =>
-      new Promise((resolve) => {
-        let frames = 0;
-        const look = () => {
-          const { covered, covering } = globalThis;
-          frames += 1;
-          if (Object.keys(covering).every((what) => what in covered)) resolve();
-          else if (frames > limit) resolve(Object.assign(covered, covering));
-          else requestAnimationFrame(look);
-        };
-        look();
-      }),
-    STAYS,
-  );
 }
 
 /**

@@ -4,7 +4,7 @@ import { mkdirSync } from "node:fs";
 import path from "node:path";
 import readline from "node:readline";
 
-import { uncovered } from "./popups.mjs";
+import { STAYS } from "./popups.mjs";
 
 /** Frames without a change after which nothing more is expected from the server, after the keys that make it format. */
 const STILL = { Enter: 12, "}": 60 };
@@ -32,7 +32,6 @@ export async function type(page, { keys, pace, frames, patient }) {
     await press(page.keyboard, key);
     if (patient) {
       await drawn(page, STILL[key] ?? 1);
-      await uncovered(page);
     }
     if (frames && Math.floor((number * 10) / keys.length) < Math.floor(((number + 1) * 10) / keys.length)) {
       await takeFrame(page, frames, Math.floor(((number + 1) * 10) / keys.length));
@@ -41,10 +40,14 @@ export async function type(page, { keys, pace, frames, patient }) {
   return (performance.now() - start) / 1000;
 }
 
-/** Waits until the text, `shownText` of the page, has been the same for some frames. A slow editor draws fewer. */
+/**
+ * Waits until the text, `shownText` of the page, has been the same for some frames, and no popup covers the line: until the
+ * answer of the server that closes or moves the one of the key before, since a list that was below a line is over it once that
+ * wraps. A slow editor draws fewer frames.
+ */
 export function drawn(page, frames) {
   return page.evaluate(
-    (wanted) =>
+    ([wanted, limit]) =>
       new Promise((resolve) => {
         let before;
         let still = -1;
@@ -52,12 +55,15 @@ export function drawn(page, frames) {
           const text = globalThis.shownText();
           still = text === before ? still + 1 : 0;
           before = text;
-          if (still >= wanted) resolve();
+          const { covered, covering } = globalThis;
+          const isCovered = !Object.keys(covering).every((what) => what in covered);
+          if (still >= wanted && !isCovered) resolve();
+          else if (still > wanted + limit) resolve(Object.assign(covered, covering));
           else requestAnimationFrame(look);
         };
         look();
       }),
-    frames,
+    [frames, STAYS],
   );
 }
 
