@@ -10,17 +10,12 @@ import subprocess
 from collections.abc import Iterator
 
 import pytest
+from signals_kept import signals_kept
+
+__all__ = ["signals_kept"]
 
 ROOT = pathlib.Path(__file__).parents[1]
 DEBUG = pathlib.Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")) / "debug"
-
-# Tests would otherwise pass on to the processes that they start that a signal is ignored: in the background of a shell SIGINT
-# and SIGQUIT, with nohup SIGHUP.
-signal.signal(signal.SIGINT, signal.default_int_handler)
-for name in ("SIGHUP", "SIGQUIT"):
-    if hasattr(signal, name):
-        signal.signal(getattr(signal, name), signal.SIG_DFL)
-
 
 # They run in environments of their own: tests/ros/run.sh.
 collect_ignore = ["ros"]

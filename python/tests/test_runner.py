@@ -65,11 +65,18 @@ if __name__ == "__main__":
 Run = Callable[..., int]
 
 
-@pytest.fixture(name="run")
-def fixture_run(monkeypatch: pytest.MonkeyPatch) -> Iterator[Run]:
-    """Runs a script in a world; returns its exit code."""
-
+@pytest.fixture
+def handlers() -> Iterator[None]:
+    """Puts back what handled signals before: a run that has ended ignores them."""
     before = {number: signal.getsignal(number) for number in interrupts.SIGNALS}
+    yield
+    for number, handler in before.items():
+        signal.signal(number, handler)
+
+
+@pytest.fixture(name="run")
+def fixture_run(monkeypatch: pytest.MonkeyPatch, handlers: None) -> Run:
+    """Runs a script in a world; returns its exit code."""
 
     def run(script: str, world: FakeWorld, *arguments: str) -> int:
         world.serve(monkeypatch)
@@ -80,9 +87,7 @@ def fixture_run(monkeypatch: pytest.MonkeyPatch) -> Iterator[Run]:
         assert isinstance(end.value.code, int)
         return end.value.code
 
-    yield run
-    for number, handler in before.items():
-        signal.signal(number, handler)
+    return run
 
 
 def one_robot(**options: float) -> FakeWorld:
@@ -240,6 +245,7 @@ def test_an_unwritable_trace_is_exit_code_2(run: Run, tmp_path: Path) -> None:
     assert run(THREE_SIDES, one_robot(), "--trace", str(tmp_path / "no" / "trace")) == 2
 
 
+@pytest.mark.usefixtures("handlers")
 def test_an_error_in_the_script_itself_has_its_traceback(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
