@@ -126,9 +126,8 @@ test("in an untrusted workspace programs are checked but not run", async () => {
     await untrusted.page.keyboard.press("Control+End");
     await untrusted.page.locator(".codelens-decoration", { hasText: "Run" }).first().waitFor();
     assert.equal(untrusted.servers().length, 1, "the workspace cannot set the server path");
-    await untrusted.page.locator(".codelens-decoration a", { hasText: /^Run$/ }).first().click();
     const message = untrusted.page.locator(".notification-toast", { hasText: "workspaces that you trust" });
-    await message.waitFor();
+    await untrusted.clickLens("Run", message);
     assert.equal(await message.locator("a", { hasText: "Manage Workspace Trust" }).count(), 1);
   });
 });

@@ -354,6 +354,15 @@ export class Stage {
     });
   }
 
+  /** Clicks a lens until what it does has begun: one that is drawn again at that moment does not get the click. */
+  async clickLens(title, begun) {
+    const lens = this.page.locator(".codelens-decoration a").getByText(title, { exact: true }).first();
+    await until(`the lens ${title} is clicked`, async () => {
+      await lens.click();
+      return begun.waitFor({ timeout: 10_000 }).then(() => true, () => false);
+    });
+  }
+
   /** Types at the cursor, key by key. */
   async type(text) {
     await this.page.keyboard.type(text, { delay: 15 });

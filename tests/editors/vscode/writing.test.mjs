@@ -162,7 +162,9 @@ test("the script is generated from the palette and opened", async () => {
 
 test("the program runs in the simulator, and the preview sums up the run without covering the path", async () => {
   await stage.line("movement patrol").first().waitFor();
-  await stage.page.locator(".codelens-decoration a", { hasText: /^Run$/ }).first().click();
+  // The run is going on, or has ended and is shown.
+  const begun = stage.page.locator('.editor-actions [aria-label^="Stop Run"]:visible, iframe.webview:visible').first();
+  await stage.clickLens("Run", begun);
   const message = await runMessage();
   assert.match(spaced(await message.innerText()), /yard: [\d.]+ s \(planned: [\d.]+ s\) simulated in [\d.]+ s/);
   assert.deepEqual(await message.getByRole("button").allInnerTexts(), ["Show Table"]);
