@@ -198,7 +198,9 @@ def difference(program: str, text: str, typed: list[Stroke]) -> str:
     line = wanted[number] if number < len(wanted) else "(the end)"
     shown = "\n              ".join(found[number : number + 3])
     keys = "".join(SIGNS.get(key, key) for key in around)
-    return f"line {number + 1}\n  typed:      {line}\n  in buffer:  {shown}\n  keys: {keys}"
+    # Of what has passed when it was tried again, only the first line is printed.
+    said = f"line {number + 1}: {found[number : number + 1]} instead of {[line]}"
+    return f"{said}\n  in buffer:  {shown}\n  keys: {keys}"
 
 
 def show(outcome: Outcome) -> None:
