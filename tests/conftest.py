@@ -46,7 +46,7 @@ def long(pytestconfig: pytest.Config) -> bool:
     return bool(pytestconfig.getoption("long"))
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def command() -> str:
     """The path of `pydslrep`."""
     return os.environ.get("PYDSLREP", str(DEBUG / "pydslrep"))

@@ -13,7 +13,6 @@
 
 from __future__ import annotations
 
-import concurrent.futures
 import json
 import os
 import re
@@ -21,7 +20,6 @@ import shutil
 import subprocess
 import sys
 import tomllib
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -154,64 +152,52 @@ def play(command: str, folder: Path, page: Path) -> list[str]:
 def different_pictures(session: Session, page: Path) -> list[str]:
     """The pictures of a page that its commands make otherwise."""
     wrong = []
-    for picture in pictures(page):
-        made = list(session.folder.rglob(picture.name))
-        if not made:
-            continue
-        MADE.add(picture)
-        if not picture.exists() or made[0].read_bytes() != picture.read_bytes():
-            wrong.append(f"{picture.relative_to(ROOT)} is not what the page makes")
+    for picture in drawn(page, [block for block in blocks(page) if is_runnable(block)]):
+        made = next(session.folder.rglob(picture.name), None)
+        shown = picture.relative_to(ROOT)
+        if made is None:
+            wrong.append(f"{shown} is not made")
+        elif not picture.exists() or made.read_bytes() != picture.read_bytes():
+            wrong.append(f"{shown} is not what the page makes")
             if UPDATE:
                 picture.parent.mkdir(parents=True, exist_ok=True)
-                shutil.copy(made[0], picture)
+                shutil.copy(made, picture)
     return wrong
 
 
-MADE: set[Path] = set()
+def drawn(page: Path, chosen: list[Block]) -> list[Path]:
+    """The pictures of a page that commands in some of its blocks name: their commands make them."""
+    words = {
+        word
+        for block in chosen
+        if block.language in ("console", "sh")
+        for line in commands(block)
+        for word in line.split()
+    }
+    return [picture for picture in pictures(page) if picture.name in words]
 
 
-@pytest.fixture(name="played", scope="module")
-def fixture_played(
-    tmp_path_factory: pytest.TempPathFactory,
-) -> Iterator[dict[Path, concurrent.futures.Future[list[str]]]]:
-    """All pages, played at the same time."""
-    command = os.environ.get(
-        "PYDSLREP",
-        str(
-            Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")) / "debug/pydslrep"
-        ),
-    )
-    folder = tmp_path_factory.mktemp("pages")
-    # The first run installs the client library, and says so.
-    first = Session(command, folder / "first")
-    code, output = first.run("pydslrep run examples/square.pyr")
+@pytest.fixture(scope="module")
+def used(command: str, tmp_path_factory: pytest.TempPathFactory) -> str:
+    """The command after its first run, which installs the client library, and says so."""
+    first = Session(command, tmp_path_factory.mktemp("first") / "run")
+    code, output = first.run("pydslrep run examples/junction.pyr")
     assert code == 0, output
-    with concurrent.futures.ThreadPoolExecutor(max_workers=os.cpu_count()) as pool:
-        yield {
-            page: pool.submit(play, command, folder / str(number), page)
-            for number, page in enumerate(SESSIONS)
-        }
+    return command
 
 
 @pytest.mark.parametrize("page", SESSIONS, ids=name)
-def test_a_page_is_as_it_says(
-    played: dict[Path, concurrent.futures.Future[list[str]]], page: Path
-) -> None:
-    wrong = played[page].result()
+def test_a_page_is_as_it_says(used: str, tmp_path: Path, page: Path) -> None:
+    wrong = play(used, tmp_path / "page", page)
     assert not wrong, "\n\n".join(wrong)
 
 
-def test_every_drawing_is_made_by_a_page(
-    played: dict[Path, concurrent.futures.Future[list[str]]],
-) -> None:
-    for page in played.values():
-        page.result()
+def test_every_drawing_is_made_by_a_page() -> None:
     # The plot of the comparison is drawn from its measurements: tests/bench/test_comparison.py.
     images = ROOT / "docs" / "images"
     drawings = {*images.glob("*.svg")} - {images / "comparison.svg"}
-    assert drawings >= MADE
-    slow = {block.page for block in ALL if not IS_PATIENT and "slow" in block.info}
-    assert drawings - MADE <= {drawing for page in slow for drawing in pictures(page)}
+    made = {picture for page in PAGES for picture in drawn(page, blocks(page))}
+    assert drawings <= made
 
 
 @pytest.mark.parametrize(
