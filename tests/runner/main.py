@@ -10,7 +10,7 @@ import time
 
 import jobs
 import report
-from schedule import LIMIT, Schedule, runner
+from schedule import LIMIT, Commands, Schedule, runner
 
 # How much the tests with an amount of their own do at full length.
 AMOUNTS = {
@@ -28,9 +28,10 @@ AMOUNTS = {
 def main() -> None:
     """Runs what the arguments choose; exits with 1 if something failed."""
     options = arguments()
-    # In the background of a shell, SIGINT is ignored; and SIGTERM has to end the commands, too.
+    # In the background of a shell, SIGINT is ignored; and SIGTERM has to end the commands, too. An exception from a handler
+    # could come where a lock of the pool is taken, and nothing would end any more.
     for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, signal.default_int_handler)
+        signal.signal(number, lambda *_: Commands.interrupt())
     begin = time.monotonic()
     jobs.LOGS.mkdir(parents=True, exist_ok=True)
     limit = 24 * LIMIT if options.long else LIMIT

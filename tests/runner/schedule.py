@@ -57,19 +57,23 @@ class Schedule:
         self.processors = (os.cpu_count() or 1) + 1
 
     def finish(self) -> list[Outcome]:
-        """Runs everything, and returns what came of it in the order in which it ended. An interrupt ends what runs."""
+        """Runs everything, and returns what came of it in the order in which it ended; raises KeyboardInterrupt after
+        `Commands.interrupt`.
+        """
         with ThreadPoolExecutor(max_workers=len(self.left) or 1) as pool:
             try:
                 self.run_all(pool)
-            except KeyboardInterrupt:
+            except BaseException:
                 # Before the pool is left, which waits for what runs.
                 Commands.interrupt()
                 raise
+        if Commands.interrupted:
+            raise KeyboardInterrupt
         return list(self.outcomes.values())
 
     def run_all(self, pool: ThreadPoolExecutor) -> None:
-        """Runs what is left."""
-        while self.left or self.running:
+        """Runs what is left, until an interrupt."""
+        while (self.left or self.running) and not Commands.interrupted:
             self.skip()
             while job := self.next():
                 self.left.remove(job)
@@ -78,7 +82,8 @@ class Schedule:
                 done, _ = wait(self.running, return_when=FIRST_COMPLETED)
                 for future in done:
                     del self.running[future]
-                    self.end(future.result())
+                    if not Commands.interrupted:
+                        self.end(future.result())
 
     def next(self) -> Job | None:
         """The job that begins now: the first of which everything is there, as soon as there is a place for it.
@@ -169,7 +174,7 @@ class Commands:
 
     @classmethod
     def interrupt(cls) -> None:
-        """Ends all commands, and lets no other begin."""
+        """Ends all commands, and lets no other begin. It takes no lock, so that handlers of signals can call it."""
         cls.interrupted = True
         for group in list(cls.groups):
             cls.terminate(group)

@@ -173,13 +173,33 @@ def test_an_interrupt_at_any_point_ends_what_runs(
     monkeypatch.setattr(Commands, "interrupted", False)
 
     def interrupt(_: Outcome) -> None:
-        raise KeyboardInterrupt
+        Commands.interrupt()
+
+    quick, slow = Job("quick", ("true",)), Job("slow", ("sleep 1000",))
+    after = Job("after", ("touch after",), after=("quick",))
+    schedule = Schedule(
+        [slow, quick, after],
+        runner(tmp_path, tmp_path, {"PATH": "/usr/bin:/bin"}),
+        interrupt,
+    )
+    with pytest.raises(KeyboardInterrupt):
+        schedule.finish()
+    assert not (tmp_path / "after").exists()
+
+
+def test_an_error_ends_what_runs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(Commands, "interrupted", False)
+
+    def fail(_: Outcome) -> None:
+        raise BrokenPipeError
 
     quick, slow = Job("quick", ("true",)), Job("slow", ("sleep 1000",))
     schedule = Schedule(
-        [slow, quick], runner(tmp_path, tmp_path, {"PATH": "/usr/bin:/bin"}), interrupt
+        [slow, quick], runner(tmp_path, tmp_path, {"PATH": "/usr/bin:/bin"}), fail
     )
-    with pytest.raises(KeyboardInterrupt):
+    with pytest.raises(BrokenPipeError):
         schedule.finish()
 
 
