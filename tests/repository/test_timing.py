@@ -51,7 +51,7 @@ ALLOWED: dict[str, dict[str, str]] = {
         "setTimeout(resolve, 50)": "waits for a state of the page, up to a limit",
         "setTimeout(resolve, 5000)": "after all tests: does not wait for a browser that hangs",
     },
-    "tests/editors/vscode/appearance.test.mjs": {
+    "tests/editors/vscode/preview.test.mjs": {
         "performance.": "prints a figure; nothing is compared with it",
     },
     "tests/editors/preview/preview.test.mjs": {

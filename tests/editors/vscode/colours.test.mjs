@@ -1,14 +1,13 @@
-// The colours of programs by the grammar, and by semantic tokens: what is shown before and after the server responds.
+// Programs look the same before and after the server responds: the grammar and semantic tokens give the same colours.
 import assert from "node:assert/strict";
 import { readdirSync } from "node:fs";
 import path from "node:path";
+import { test } from "node:test";
 
-import { program, repository, until } from "./stage.mjs";
+import { Stage, program, repository, until } from "./stage.mjs";
 
 const names = readdirSync(path.join(repository, "tests/paper")).filter((name) => name.endsWith(".pyr"));
-
-/** The programs that are compared: the article's. */
-export const files = Object.fromEntries(names.map((name) => [name, program(`tests/paper/${name}`)]));
+const files = Object.fromEntries(names.map((name) => [name, program(`tests/paper/${name}`)]));
 
 /** Themes with their CSS class names. */
 const THEMES = { "Default Dark Modern": "dark_modern", "Default Light Modern": "light_modern", Monokai: "monokai" };
@@ -18,6 +17,9 @@ function shownIn(theme) {
   const isShort = theme !== Object.keys(THEMES)[0] && !process.env.LONG;
   return isShort ? names.toSorted((one, other) => files[other].length - files[one].length).slice(0, 1) : names;
 }
+
+/** Shows nothing in the lines except the program. */
+const PLAIN = { "editor.codeLens": false, "editor.inlayHints.enabled": "off", "editor.occurrencesHighlight": "off" };
 
 /** Colours that no theme has, for two types of semantic tokens: they prove that the new settings are applied. */
 const MARKS = { "class": "rgb(1, 254, 3)", "function": "rgb(1, 253, 3)" };
@@ -96,21 +98,20 @@ async function withoutTokens(stage, name, theme, expected) {
   return seen;
 }
 
-/** Compares both in an editor that shows all of each program, and in its lines nothing else. The first theme is there afterwards. */
-export async function compareColours(stage) {
-  for (const [theme, cssClass] of Object.entries(THEMES)) {
-    stage.set({ "workbench.colorTheme": theme });
-    await stage.page.locator(`.monaco-workbench[class*="${cssClass}"]`).waitFor();
-    let compared = 0;
-    for (const name of shownIn(theme)) {
-      await stage.openFile(name);
-      const seen = await withoutTokens(stage, name, theme, await withTokens(stage, name, theme));
-      assert.ok(new Set(seen.map((one) => one.slice(2))).size > 3, `${name} has colours in ${theme}`);
-      compared += seen.length;
+test("semantic tokens change the colour of no character of the article's programs", async () => {
+  const options = { files, open: names[0], settings: PLAIN, size: { width: 1300, height: 900 } };
+  await Stage.with(options, async (stage) => {
+    for (const [theme, cssClass] of Object.entries(THEMES)) {
+      stage.set({ "workbench.colorTheme": theme });
+      await stage.page.locator(`.monaco-workbench[class*="${cssClass}"]`).waitFor();
+      let compared = 0;
+      for (const name of shownIn(theme)) {
+        await stage.openFile(name);
+        const seen = await withoutTokens(stage, name, theme, await withTokens(stage, name, theme));
+        assert.ok(new Set(seen.map((one) => one.slice(2))).size > 3, `${name} has colours in ${theme}`);
+        compared += seen.length;
+      }
+      console.log(`${theme}: ${compared} characters of ${shownIn(theme).length} programs`);
     }
-    console.log(`${theme}: ${compared} characters of ${shownIn(theme).length} programs`);
-  }
-  const [[theme, cssClass]] = Object.entries(THEMES);
-  stage.set({ "workbench.colorTheme": theme, ...tokens(true), "editor.semanticTokenColorCustomizations": {} });
-  await stage.page.locator(`.monaco-workbench[class*="${cssClass}"]`).waitFor();
-}
+  });
+});

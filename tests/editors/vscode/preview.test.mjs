@@ -1,48 +1,27 @@
-// How the real editor shows programs: in the same colours before and after the server responds, and with their path next to
-// them, which follows the text.
+// The path preview in the real editor: opens next to the program and follows the text.
 import assert from "node:assert/strict";
-import { readFileSync, rmSync } from "node:fs";
+import { readFileSync } from "node:fs";
 import path from "node:path";
 import { after, afterEach, before, test } from "node:test";
 
-import { compareColours, files } from "./colours.mjs";
 import { Stage, program, until } from "./stage.mjs";
-
-/** Of which all lines of the longest program are visible. */
-const TALL = { width: 1300, height: 900 };
 
 let stage;
 let frame;
 before(async () => {
   stage = await Stage.open({
-    files: { ...files, "convoy.pyr": program("examples/convoy.pyr") },
+    files: { "convoy.pyr": program("examples/convoy.pyr") },
     open: "convoy.pyr",
-    // Nothing is in the lines except the program.
-    settings: { "editor.codeLens": false, "editor.inlayHints.enabled": "off", "editor.occurrencesHighlight": "off" },
+    settings: { "editor.codeLens": false, "editor.inlayHints.enabled": "off" },
   });
 });
 afterEach((t) => t.passed || stage?.keepPicture());
 after(() => stage?.close());
 
-test("semantic tokens change the colour of no character of the article's programs", async () => {
-  const usual = stage.page.viewportSize();
-  await stage.page.setViewportSize(TALL);
-  await compareColours(stage);
-  await stage.page.setViewportSize(usual);
-  await stage.call("View: Close All Editors");
-  // Some have errors, which would be counted below the preview.
-  for (const name of Object.keys(files)) {
-    rmSync(path.join(stage.folder, name));
-  }
-  const problems = stage.page.locator('[id="status.problems"]');
-  await until("no problem is left", async () => /^\D*0\D*0\D*$/.test(await problems.innerText()));
-});
-
 /** How many paths the page has drawn. */
 const drawCount = () => frame.locator("main.preview").getAttribute("data-drawn").then(Number);
 
 test("the preview opens next to the program by its keys", async () => {
-  await stage.openFile("convoy.pyr");
   await stage.keyOf("PyDSLRep: Show Path Preview", "Ctrl+K");
   await stage.clickLine("parallel movement cross_1");
   await stage.page.keyboard.press("Control+K");
