@@ -20,8 +20,8 @@ from results import Failure, Results
 LIMIT = 60 * 60.0
 """After how many seconds a command counts as hung, however busy the machine is: alone, none needs a quarter of that."""
 
-AGAIN = 1.0
-"""After how many seconds it is looked whether there was an interrupt."""
+NOTICED = 1.0
+"""Within how many seconds an interrupt is noticed."""
 
 
 @dataclass
@@ -82,8 +82,8 @@ class Schedule:
                 self.left.remove(job)
                 self.running[pool.submit(self.run, job)] = job
             if self.running:
-                # Again and again: a signal that comes right before a thread begins to wait does not wake it.
-                done, _ = wait(self.running, AGAIN, return_when=FIRST_COMPLETED)
+                # Not without a limit: a signal that comes right before the main thread begins to wait does not wake it.
+                done, _ = wait(self.running, NOTICED, return_when=FIRST_COMPLETED)
                 for future in done:
                     del self.running[future]
                     if not Commands.interrupted:
